@@ -1,0 +1,3 @@
+//! The `ferrom` command.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! FE model to modes: eigen-solution, rigid modes, proof of completeness, damping.

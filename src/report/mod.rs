@@ -1,0 +1,1 @@
+//! Nouns to words, tables and pictures.

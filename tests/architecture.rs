@@ -1,0 +1,1 @@
+//! The allowed-uses table of lib.rs holds.

@@ -1,0 +1,1 @@
+//! What other programs wrote is read as they meant it.

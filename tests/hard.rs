@@ -1,0 +1,1 @@
+//! Hard eigenproblems give the right number or one clear error.

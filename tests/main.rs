@@ -1,0 +1,5 @@
+//! All integration tests, one binary.
+
+mod architecture;
+mod formats;
+mod hard;
