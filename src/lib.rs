@@ -43,4 +43,5 @@ pub mod linalg;
 pub mod modal;
 pub mod model;
 pub mod quantity;
+pub mod rank;
 pub mod report;
