@@ -45,3 +45,4 @@ pub mod model;
 pub mod quantity;
 pub mod rank;
 pub mod report;
+pub mod simulate;

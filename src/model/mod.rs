@@ -20,7 +20,7 @@ pub use modes::{Completeness, ModeNo, Modes, Origin};
 pub use progress::{Progress, Silent};
 pub use ranking::{Ranking, Score, Selection};
 pub use reduced::{KeptDof, KeptMode, KeptNode, ReducedModel, Residual, RigidPart};
-pub use rigid_body::RigidBody;
+pub use rigid_body::{RigidBody, rigid_motions};
 pub use source::Source;
 pub use state_space::StateSpace;
 pub use trajectory::{Channel, Energy, Extreme, Stats, Trajectory};

@@ -55,8 +55,9 @@ pub struct RigidPart {
 /// degree of freedom that the kept modes lack, mass-orthonormalised. t vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
-    /// R, k×k, m/N: static flexibility less Σ_kept φφᵀ/ω²; rows and columns of measured nodes are
-    /// zero. R = S diag(1/ω²) Sᵀ with the two fields below.
+    /// R, k×k, m/N: static flexibility less Σ_kept φφᵀ/ω², equal to S diag(1/ω²) Sᵀ with the two
+    /// fields below. Exact in the columns (and rows) of joint nodes, which carry forces; between two
+    /// measured nodes it is the part the residual vectors span.
     pub flexibility: DMatrix<f64>,
     /// Frequencies of the residual vectors, rad/s; t.
     pub omega: Vec<f64>,
