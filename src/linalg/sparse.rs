@@ -44,52 +44,65 @@ impl SymSparse {
     /// entry below the diagonal is taken as its mirror image). Entries at the same place add up;
     /// off-diagonal zeros are dropped.
     pub fn from_triplets(order: usize, entries: &[(usize, usize, f64)]) -> Result<Self, SparseError> {
-        let mut count = vec![0usize; order + 1];
-        for &(i, j, value) in entries {
+        Self::gather(order, entries.iter().copied())
+    }
+
+    /// The same from indices of half the size: the form in which large files are read.
+    pub fn from_compact(order: usize, entries: &[(u32, u32, f64)]) -> Result<Self, SparseError> {
+        Self::gather(order, entries.iter().map(|&(i, j, value)| (i as usize, j as usize, value)))
+    }
+
+    /// Counts the columns, drops each entry into its column, then orders every column in place.
+    fn gather(order: usize, entries: impl Iterator<Item = (usize, usize, f64)> + Clone) -> Result<Self, SparseError> {
+        let mut start = vec![0usize; order + 1];
+        for (i, j, value) in entries.clone() {
             if i >= order || j >= order {
                 return Err(SparseError::Outside { row: i + 1, col: j + 1, order });
             }
             if !value.is_finite() {
                 return Err(SparseError::NotFinite { row: i + 1, col: j + 1, value });
             }
-            count[i.max(j) + 1] += 1;
+            start[i.max(j) + 1] += usize::from(value != 0.0 || i == j);
         }
         for j in 0..order {
-            count[j + 1] += count[j];
+            start[j + 1] += start[j];
         }
-        let mut next = count.clone();
-        let mut bucket = vec![(0usize, 0.0f64); entries.len()];
-        for &(i, j, value) in entries {
-            let col = i.max(j);
-            bucket[next[col]] = (i.min(j), value);
-            next[col] += 1;
+        let mut next = start.clone();
+        let mut row = vec![0usize; start[order]];
+        let mut value = vec![0.0f64; start[order]];
+        for (i, j, v) in entries.filter(|&(i, j, v)| v != 0.0 || i == j) {
+            let place = &mut next[i.max(j)];
+            (row[*place], value[*place]) = (i.min(j), v);
+            *place += 1;
         }
-        let mut matrix = Self {
-            order,
-            col_start: Vec::with_capacity(order + 1),
-            row: Vec::with_capacity(entries.len()),
-            value: Vec::with_capacity(entries.len()),
-        };
-        matrix.col_start.push(0);
+        let mut filled = 0;
+        let mut col_start = Vec::with_capacity(order + 1);
+        col_start.push(0);
+        let mut column: Vec<(usize, f64)> = Vec::new();
         for j in 0..order {
-            let column = &mut bucket[count[j]..count[j + 1]];
-            if !column.is_sorted_by_key(|e| e.0) {
+            let (first, end) = (start[j], start[j + 1]);
+            if !row[first..end].is_sorted() {
+                column.clear();
+                column.extend(row[first..end].iter().copied().zip(value[first..end].iter().copied()));
                 column.sort_by_key(|e| e.0);
-            }
-            let begin = matrix.row.len();
-            for &(i, value) in column.iter() {
-                if matrix.row.len() > begin && matrix.row.last() == Some(&i) {
-                    if let Some(last) = matrix.value.last_mut() {
-                        *last += value;
-                    }
-                } else if value != 0.0 || i == j {
-                    matrix.row.push(i);
-                    matrix.value.push(value);
+                for (k, &(i, v)) in column.iter().enumerate() {
+                    (row[first + k], value[first + k]) = (i, v);
                 }
             }
-            matrix.col_start.push(matrix.row.len());
+            let begin = filled;
+            for k in first..end {
+                if filled > begin && row[filled - 1] == row[k] {
+                    value[filled - 1] += value[k];
+                } else {
+                    (row[filled], value[filled]) = (row[k], value[k]);
+                    filled += 1;
+                }
+            }
+            col_start.push(filled);
         }
-        Ok(matrix)
+        row.truncate(filled);
+        value.truncate(filled);
+        Ok(Self { order, col_start, row, value })
     }
 
     /// The identity of order n.
@@ -147,6 +160,16 @@ impl SymSparse {
     pub fn scaled(mut self, factor: f64) -> Self {
         for v in &mut self.value {
             *v *= factor;
+        }
+        self
+    }
+
+    /// The same pattern with every stored entry replaced by f(row, column, value), row ≤ column.
+    pub fn map_entries(mut self, f: impl Fn(usize, usize, f64) -> f64) -> Self {
+        for j in 0..self.order {
+            for k in self.col_start[j]..self.col_start[j + 1] {
+                self.value[k] = f(self.row[k], j, self.value[k]);
+            }
         }
         self
     }
