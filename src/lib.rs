@@ -37,12 +37,15 @@
 //! main     <- cli
 //! ```
 
+pub mod cli;
 pub mod format;
 pub mod frf;
 pub mod linalg;
 pub mod modal;
 pub mod model;
+pub mod pipeline;
 pub mod quantity;
 pub mod rank;
+pub mod reduce;
 pub mod report;
 pub mod simulate;

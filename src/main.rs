@@ -1,3 +1,5 @@
 //! The `ferrom` command.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    ferrom::cli::main()
+}

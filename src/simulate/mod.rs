@@ -24,5 +24,5 @@ pub use error::SceneError;
 pub use integrate::{INTEGRATORS, IntegratorInfo};
 pub use joint::{PRESETS, Preset};
 pub use run::{FORMULATIONS, FormulationInfo, simulate};
-pub use scene::{Analysis, BodySpec, Formulation, Reference, Scene};
+pub use scene::{Analysis, BodySpec, FlexibilityTable, Formulation, OtherValues, Reference, Scene};
 pub use system::System;

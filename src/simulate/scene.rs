@@ -264,6 +264,18 @@ pub struct Reference {
     pub channel: Spanned<String>,
     /// In order of the channel's extremes or of the load cases, m.
     pub values: Vec<Quantity<Length>>,
+    /// What another simulation of the same gave.
+    pub other: Option<OtherValues>,
+}
+
+/// Values of another simulation beside a reference.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct OtherValues {
+    /// Whose they are.
+    pub name: String,
+    /// In the order of the reference's values, m.
+    pub values: Vec<Quantity<Length>>,
 }
 
 impl Scene {
