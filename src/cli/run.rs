@@ -61,7 +61,7 @@ pub(super) fn run(arguments: &Arguments, progress: &dyn Progress) -> Result<Outc
     let mut pictures = Vec::new();
     if !built.ranking.scores.is_empty() {
         let name = &built.analysed.recipe.name;
-        let receptance = picture_of(name, &built.analysed.modes, &built.selection, &built.paths, 3000);
+        let receptance = picture_of(name, &built.analysed.modes, &built.selection, &built.drawn, 3000);
         pictures.push(("receptance".to_string(), receptance_plot(&receptance).map_err(plotting)?));
         let threshold = match built.analysed.recipe.select {
             Rule::LastAbove { threshold } | Rule::EachAbove { threshold } => Some(threshold),

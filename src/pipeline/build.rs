@@ -52,6 +52,8 @@ pub struct Built {
     pub analysed: Analysed,
     /// Paths the ranking used.
     pub paths: Vec<TransferPath>,
+    /// Paths to draw: those of the ranking and the recipe's `draw`.
+    pub drawn: Vec<TransferPath>,
     /// Scores.
     pub ranking: Ranking,
     /// Kept modes.
@@ -218,6 +220,10 @@ pub fn build(mut analysed: Analysed, rule: Option<&Rule>, progress: &dyn Progres
     for [input, output] in &settings.also {
         paths.push(TransferPath { input: end(input)?, output: end(output)? });
     }
+    let mut drawn = paths.clone();
+    for output in &settings.draw {
+        drawn.push(TransferPath { input: end(&settings.input)?, output: end(output)? });
+    }
     let criterion = criterion(settings.criterion.get_ref()).ok_or_else(|| {
         let known = CRITERIA.iter().map(|c| c.name).collect::<Vec<_>>().join(", ");
         analysed.at(settings.criterion.span(), format!("unknown criterion \"{}\"; the criteria are {known}", settings.criterion.get_ref()))
@@ -247,7 +253,7 @@ pub fn build(mut analysed: Analysed, rule: Option<&Rule>, progress: &dyn Progres
     )?;
     analysed.timings.push(Timing { stage: "reduce", wall_s: clock.elapsed().as_secs_f64() });
     let output = output_file(&analysed.file, &analysed.recipe);
-    Ok(Built { analysed, paths, ranking, selection, reduced, output })
+    Ok(Built { analysed, paths, drawn, ranking, selection, reduced, output })
 }
 
 /// Writes the reduced model and its summary; returns the size of the model in bytes.

@@ -1,7 +1,7 @@
 //! Where things are: the recipe of a model, the reduced files it leads to.
 
 use super::{PipelineError, Recipe};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The model.toml of an argument that names it or its folder.
 pub fn model_file(argument: &Path) -> Result<PathBuf, PipelineError> {
@@ -25,10 +25,25 @@ pub fn model_file(argument: &Path) -> Result<PathBuf, PipelineError> {
 /// the folder that holds the model's folder (models/NAME/model.toml → reduced/NAME.h5).
 pub fn output_file(model_file: &Path, recipe: &Recipe) -> PathBuf {
     let folder = model_file.parent().unwrap_or(Path::new("."));
-    match &recipe.reduce.output {
+    tidy(&match &recipe.reduce.output {
         Some(output) => folder.join(output),
         None => folder.join("../../reduced").join(format!("{}.h5", recipe.name)),
+    })
+}
+
+/// The same path without "NAME/.." detours, where NAME is no link ("models/leaf/../../reduced" reads
+/// badly and means "reduced").
+fn tidy(path: &Path) -> PathBuf {
+    let mut short = PathBuf::new();
+    for part in path.components() {
+        let plain = matches!(short.components().next_back(), Some(Component::Normal(_)));
+        if part == Component::ParentDir && plain && !short.is_symlink() {
+            short.pop();
+        } else {
+            short.push(part);
+        }
     }
+    short
 }
 
 /// The readable summary beside a reduced model.

@@ -170,6 +170,9 @@ pub struct RankSettings {
     /// More pairs [input, output]: a mode is as important as its best pair.
     #[serde(default)]
     pub also: Vec<[Spanned<String>; 2]>,
+    /// More outputs to draw beside the ranked path in the receptance plot, for the same input.
+    #[serde(default)]
+    pub draw: Vec<Spanned<String>>,
 }
 
 fn default_criterion() -> Spanned<String> {

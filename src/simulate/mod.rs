@@ -3,12 +3,15 @@
 //! forces solved implicitly.
 
 mod assemble;
+mod bodies;
 mod body;
 mod channels;
+mod constraints;
 mod contact;
 mod effect;
 mod energy;
 mod error;
+mod forces;
 mod integrate;
 mod joint;
 mod record;
