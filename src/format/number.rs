@@ -99,6 +99,24 @@ mod tests {
     }
 
     #[test]
+    fn numbers_are_rounded_as_the_standard_library_rounds_them() {
+        // A fixed walk through mantissas and exponents of every length.
+        let mut seed = 1u64;
+        for k in 0..200_000u64 {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let mantissa = (seed >> (k % 64)) as i64;
+            let exponent = (seed >> 20) % 60;
+            let digits = (seed % 17) as usize;
+            let value = mantissa as f64 * 10f64.powi(exponent as i32 - 30);
+            for text in [format!("{value:.digits$e}"), format!("{value:.digits$}"), format!("{mantissa}")] {
+                let expected: f64 = text.parse().expect("a number");
+                assert_eq!(whole_real(text.as_bytes()).map(f64::to_bits), Some(expected.to_bits()), "{text}");
+            }
+        }
+        assert_eq!(whole_real(b"-0.0").map(f64::to_bits), Some((-0.0f64).to_bits()));
+    }
+
+    #[test]
     fn digits_stop_before_they_overflow() {
         assert_eq!(digits(b"123 ", 0), Some((123, 3)));
         assert_eq!(digits(b"9999999999999999999", 0), None);
