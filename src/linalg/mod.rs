@@ -2,12 +2,14 @@
 
 mod basis;
 mod block;
+mod dense;
 mod error;
 mod factor;
 mod front;
 mod graph;
 mod lanczos;
 mod ordering;
+mod products;
 mod ritz;
 mod row_sparse;
 mod sparse;
@@ -17,6 +19,7 @@ mod symbolic;
 mod tree;
 mod vectorised;
 
+pub use dense::{DenseError, dense_pencil};
 pub use error::FactorError;
 pub use factor::{Inertia, ShiftedFactor};
 pub use lanczos::{EigenPairs, LanczosOptions, LanczosStatus, lanczos};
