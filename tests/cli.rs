@@ -136,7 +136,8 @@ fn truncated_matrix() {
 fn damping_must_be_stated() {
     let path = broken_chain("undamped", "model.toml", |t| t.replace("[damping]\nratio = 0\n", ""));
     refused(&path, 3, &["model.toml", "damping"]);
-    let path = broken_chain("twice-damped", "model.toml", |t| t.replace("ratio = 0\n", "ratio = 0\npreset = \"adams\"\n"));
+    let path =
+        broken_chain("twice-damped", "model.toml", |t| t.replace("ratio = 0\n", "ratio = 0\npreset = \"adams\"\n"));
     refused(&path, 3, &["model.toml:", "exactly one of"]);
 }
 

@@ -37,9 +37,16 @@ fn ranking_selects_7_to_17_with_the_published_scores() {
     let ranking = rank(&analysed.modes, criterion("peak-gain").expect("in the table"), &[path]);
     let relative = |n: u32| ranking.scores.iter().find(|s| s.mode == ModeNo(n)).expect("ranked").relative;
     // Three digits, as the reference states them.
-    for (mode, expected) in
-        [(7, 1.0), (8, 5.46e-2), (10, 1.97e-3), (11, 8.08e-4), (13, 3.09e-4), (14, 2.58e-4), (17, 3.50e-4), (18, 1.17e-4)]
-    {
+    for (mode, expected) in [
+        (7, 1.0),
+        (8, 5.46e-2),
+        (10, 1.97e-3),
+        (11, 8.08e-4),
+        (13, 3.09e-4),
+        (14, 2.58e-4),
+        (17, 3.50e-4),
+        (18, 1.17e-4),
+    ] {
         assert!((relative(mode) / expected - 1.0).abs() < 5e-3, "mode {mode}: {:e}", relative(mode));
     }
     for zero in [9, 12, 15, 16, 19] {

@@ -18,7 +18,12 @@ fn pin(t: &Trajectory) -> &[Extreme] {
 
 fn assert_near(found: &[Extreme], expected: &Table, millimetres: f64) {
     for (k, (e, (value, at))) in found.iter().zip(expected).enumerate() {
-        assert!((e.value * 1e3 - value).abs() < millimetres, "extreme {}: {} mm, expected {value}", k + 1, e.value * 1e3);
+        assert!(
+            (e.value * 1e3 - value).abs() < millimetres,
+            "extreme {}: {} mm, expected {value}",
+            k + 1,
+            e.value * 1e3
+        );
         // The reference prints times to 0.1 ms; an extreme is flat, so its time is the weaker number.
         assert!((e.t - at).abs() < 2e-4, "extreme {}: {} s, expected {at}", k + 1, e.t);
     }
@@ -89,10 +94,8 @@ fn halving_the_step_shows_second_order() {
     };
     let exact = at(6.25e-6);
     let steps = [1e-3, 5e-4, 2.5e-4, 1.25e-4];
-    let errors: Vec<f64> = steps
-        .iter()
-        .map(|&h| at(h).iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max))
-        .collect();
+    let errors: Vec<f64> =
+        steps.iter().map(|&h| at(h).iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)).collect();
     let order = (errors[0] / errors[3]).log2() / 3.0;
     // Kinks of the friction cap are not located, so single halvings scatter; over three the order shows.
     assert!(order > 1.7, "order {order}, errors {errors:?}");

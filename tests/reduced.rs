@@ -60,15 +60,21 @@ fn state_space_reproduces_the_receptance_of_the_kept_modes() {
             for (i, &input) in rows.iter().enumerate() {
                 let mut sum = (0.0, 0.0);
                 for (c, mode) in model.modes.iter().enumerate() {
-                    let h = modal_term(mode.omega, mode.zeta, omega) * (model.shapes[(out, c)] * model.shapes[(input, c)]);
+                    let h =
+                        modal_term(mode.omega, mode.zeta, omega) * (model.shapes[(out, c)] * model.shapes[(input, c)]);
                     sum = (sum.0 + h.re, sum.1 + h.im);
                 }
                 let size = f64::hypot(sum.0, sum.1);
                 // An unbalanced 44×44 solve with entries up to ω² = 1.3e7.
-                assert!((re[(o, i)] - sum.0).abs() < 1e-8 * size && (im[(o, i)] - sum.1).abs() < 1e-8 * size, "{omega}");
+                assert!(
+                    (re[(o, i)] - sum.0).abs() < 1e-8 * size && (im[(o, i)] - sum.1).abs() < 1e-8 * size,
+                    "{omega}"
+                );
                 let acceleration = (-omega * omega * sum.0, -omega * omega * sum.1);
                 let bound = 1e-8 * omega * omega * size;
-                assert!((re[(4 + o, i)] - acceleration.0).abs() < bound && (im[(4 + o, i)] - acceleration.1).abs() < bound);
+                assert!(
+                    (re[(4 + o, i)] - acceleration.0).abs() < bound && (im[(4 + o, i)] - acceleration.1).abs() < bound
+                );
             }
         }
     }

@@ -26,7 +26,9 @@ fn free_free_beam_has_its_closed_form_frequencies() {
     let mut exact: Vec<(f64, f64)> = Vec::new();
     for height in [0.02_f64, 0.03] {
         // √(EI/ρA) = height·√(E/12ρ). Cubic elements: error (βh)⁴/720 of λ (Strang and Fix), half of ω.
-        exact.extend(roots.iter().map(|x| (x * x * height * (young / density / 12.0).sqrt(), (x / 40.0).powi(4) / 1440.0)));
+        exact.extend(
+            roots.iter().map(|x| (x * x * height * (young / density / 12.0).sqrt(), (x / 40.0).powi(4) / 1440.0)),
+        );
     }
     for n in 1..=4 {
         // Linear elements: ω(1 + (nπh/L)²/24).

@@ -1,7 +1,7 @@
 //! `ferrom check`: the CI gate.
 
-use super::output::Outcome;
 use super::CHECK_FAILED;
+use super::output::Outcome;
 use crate::format::read_reduced;
 use crate::model::{Progress, Selection};
 use crate::pipeline::{Check, Expected, PipelineError, analyse, build, check, committed, model_file};
@@ -11,7 +11,9 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  ferrom check models/leaf-spring                  against the committed reduced model\n  ferrom check models/leaf-spring --modes 7-17     against named modes as well\n  ferrom check reduced/leaf-spring.h5 --modes 7-17 without remaking it")]
+#[command(
+    after_help = "Examples:\n  ferrom check models/leaf-spring                  against the committed reduced model\n  ferrom check models/leaf-spring --modes 7-17     against named modes as well\n  ferrom check reduced/leaf-spring.h5 --modes 7-17 without remaking it"
+)]
 pub(super) struct Arguments {
     /// A reduced model (.h5), or a model.toml or its folder: then it is remade first
     model: PathBuf,

@@ -1,8 +1,8 @@
 //! `ferrom inspect`: what an export holds and what looks suspicious.
 
 use super::output::Outcome;
-use crate::format::{Holds, detect, read_dof_map, read_fe_model, read_mesh, read_reduced, read_symmetric};
 use crate::format::{FeFiles, FileUnits};
+use crate::format::{Holds, detect, read_dof_map, read_fe_model, read_mesh, read_reduced, read_symmetric};
 use crate::modal::survey;
 use crate::model::{FeModel, Progress};
 use crate::pipeline::{PipelineError, Recipe, model_file};

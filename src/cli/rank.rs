@@ -134,14 +134,8 @@ fn frf_csv(modes: &Modes, path: &TransferPath, points: usize) -> String {
     for omega in frequency_grid(0.3 * first, 1.2 * last, points, elastic) {
         let h = receptance(modes, &path.output.row, &path.input.row, 0..modes.len(), omega);
         let hz = omega / (2.0 * std::f64::consts::PI);
-        let _ = writeln!(
-            csv,
-            "{omega:e},{hz:e},{:e},{:e},{:e},{:.6}",
-            h.re,
-            h.im,
-            h.magnitude(),
-            h.phase().to_degrees()
-        );
+        let _ =
+            writeln!(csv, "{omega:e},{hz:e},{:e},{:e},{:e},{:.6}", h.re, h.im, h.magnitude(), h.phase().to_degrees());
     }
     csv
 }

@@ -1,12 +1,12 @@
 //! `ferrom run`: the whole pipeline of a project folder.
 
+use super::CHECK_FAILED;
 use super::check::{check_json, check_text};
 use super::modes::{completeness_words, modes_json};
 use super::output::Outcome;
 use super::rank::{picture_of, ranking_json};
 use super::reduce::selection_text;
 use super::simulate::{trajectory_json, trajectory_text};
-use super::CHECK_FAILED;
 use crate::format::{trajectory_to_csv, write_atomically};
 use crate::model::{Channel, Progress, RigidBody, Trajectory};
 use crate::pipeline::{
@@ -16,8 +16,8 @@ use crate::pipeline::{
 use crate::rank::Rule;
 use crate::report::plot::{Picture, PlotError};
 use crate::report::{
-    Compared, Figure, Page, Reference as Overlay, Section, Table, channels_table, comparison_table,
-    energy_table, history_plot, modes_table, ranking_plot, ranking_table, receptance_plot,
+    Compared, Figure, Page, Reference as Overlay, Section, Table, channels_table, comparison_table, energy_table,
+    history_plot, modes_table, ranking_plot, ranking_table, receptance_plot,
 };
 use crate::simulate::simulate;
 use clap::Args;
@@ -68,7 +68,8 @@ pub(super) fn run(arguments: &Arguments, progress: &dyn Progress) -> Result<Outc
             _ => None,
         };
         if built.ranking.scores.iter().any(|s| s.score > 0.0) {
-            let title = format!("{name}: {} {} → {}", built.ranking.criterion, built.ranking.input, built.ranking.output);
+            let title =
+                format!("{name}: {} {} → {}", built.ranking.criterion, built.ranking.input, built.ranking.output);
             let picture = ranking_plot(&title, &built.ranking, &built.selection, threshold).map_err(plotting)?;
             pictures.push(("ranking".to_string(), picture));
         }
@@ -89,8 +90,7 @@ pub(super) fn run(arguments: &Arguments, progress: &dyn Progress) -> Result<Outc
     }
     let files = write_report(&report, &built, &checked, &tables, &pictures, &scenes)?;
     let wall = begun.elapsed().as_secs_f64();
-    let stages: Vec<String> =
-        built.analysed.timings.iter().map(|t| format!("{} {:.2} s", t.stage, t.wall_s)).collect();
+    let stages: Vec<String> = built.analysed.timings.iter().map(|t| format!("{} {:.2} s", t.stage, t.wall_s)).collect();
     text += &format!("\nReport: {}\nTime: {}; everything {wall:.2} s\n", files[0], stages.join(", "));
     let mut warnings: Vec<String> = built.analysed.modes.warnings.clone();
     warnings.extend(built.selection.warnings.iter().cloned());
@@ -130,9 +130,9 @@ fn keep(built: &Built) -> Result<(Check, u64, String), PipelineError> {
     let state_space = built.analysed.recipe.reduce.state_space;
     let shown = output.display();
     let old = committed(output)?;
-    let same_input = old
-        .as_ref()
-        .is_some_and(|m| m.recipe == built.reduced.recipe && m.sources == built.reduced.sources && summary_file(output).is_file());
+    let same_input = old.as_ref().is_some_and(|m| {
+        m.recipe == built.reduced.recipe && m.sources == built.reduced.sources && summary_file(output).is_file()
+    });
     let expected = Expected {
         modes: None,
         model: if same_input { old } else { None },

@@ -6,7 +6,9 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum FactorError {
     /// K and M differ in size.
-    #[error("the stiffness matrix has order {stiffness}, the mass matrix {mass}; both must belong to the same degrees of freedom")]
+    #[error(
+        "the stiffness matrix has order {stiffness}, the mass matrix {mass}; both must belong to the same degrees of freedom"
+    )]
     OrderMismatch {
         /// Order of K.
         stiffness: usize,

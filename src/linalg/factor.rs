@@ -348,16 +348,9 @@ impl<'a> Worker<'a> {
         let under = below.len();
         let mut update = self.spare.pop().unwrap_or_default();
         update.resize((under * under).max(update.len()), 0.0);
-        let outcome = eliminate(
-            panel,
-            width,
-            &mut update[..under * under],
-            self.pivoting,
-            &mut pivots,
-            &mut self.scratch,
-            par,
-        )
-        .map_err(|e| e.at(|local| analysis.perm[columns.start + local] as usize))?;
+        let outcome =
+            eliminate(panel, width, &mut update[..under * under], self.pivoting, &mut pivots, &mut self.scratch, par)
+                .map_err(|e| e.at(|local| analysis.perm[columns.start + local] as usize))?;
         self.inertia.negative += outcome.negative;
         self.inertia.growth = self.inertia.growth.max(outcome.largest);
         for ((_, child), map) in children.iter().zip(&maps) {

@@ -4,9 +4,7 @@ use super::FactorError;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{lblt, llt};
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place,
-};
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place};
 use faer::prelude::*;
 use faer::{Accum, Auto, MatMut, Par, Spec};
 
@@ -72,14 +70,8 @@ pub(super) fn eliminate(
         Pivoting::Definite => {
             let params: Spec<llt::factor::LltParams, f64> = Spec::new(Auto::<f64>::auto());
             let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(width, par, params));
-            llt::factor::cholesky_in_place(
-                pivot.rb_mut(),
-                Default::default(),
-                par,
-                MemStack::new(&mut memory),
-                params,
-            )
-            .map_err(|llt::factor::LltError::NonPositivePivot { index }| FactorError::NotDefinite { row: index })?;
+            llt::factor::cholesky_in_place(pivot.rb_mut(), Default::default(), par, MemStack::new(&mut memory), params)
+                .map_err(|llt::factor::LltError::NonPositivePivot { index }| FactorError::NotDefinite { row: index })?;
             if under > 0 {
                 solve_lower_triangular_in_place(pivot.rb(), lower.rb_mut().transpose_mut(), par);
                 matmul(

@@ -1,10 +1,10 @@
 //! Shift-invert block Lanczos with thick restart.
 
+use super::SymSparse;
 use super::basis::{Basis, Step};
 use super::factor::ShiftedFactor;
 use super::ritz::{Projected, Ritz};
 use super::row_sparse::RowSparse;
-use super::SymSparse;
 use nalgebra::DMatrix;
 
 /// Vectors worked on together: eight doubles fill a cache line and an AVX-512 register, and eight
@@ -113,7 +113,14 @@ pub fn lanczos(
             return None;
         }
         if let Some((ritz, converged)) = pairs {
-            return Some(finish(&basis, &ritz, &step, &options, Tally { n, steps, restarts, largest, converged }, &mass));
+            return Some(finish(
+                &basis,
+                &ritz,
+                &step,
+                &options,
+                Tally { n, steps, restarts, largest, converged },
+                &mass,
+            ));
         }
         projected.couple(&step);
         basis.advance(step);

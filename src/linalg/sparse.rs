@@ -1,6 +1,5 @@
 //! Symmetric sparse matrices, upper triangle in compressed columns.
 
-use nalgebra::DMatrix;
 use thiserror::Error;
 
 /// A symmetric n×n matrix; only the upper triangle (row ≤ column) is stored, column by column,
@@ -197,16 +196,6 @@ impl SymSparse {
             }
             y[j] += sum;
         }
-    }
-
-    /// Y = A X, column by column.
-    pub fn mul_block(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut y = DMatrix::zeros(self.order, x.ncols());
-        let n = self.order;
-        for c in 0..x.ncols() {
-            self.mul_add(&x.as_slice()[c * n..(c + 1) * n], &mut y.as_mut_slice()[c * n..(c + 1) * n]);
-        }
-        y
     }
 }
 

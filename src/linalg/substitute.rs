@@ -214,7 +214,8 @@ impl<const P: usize> Kernel for Forward<'_, P> {
             }
             let (_, rest) = self.own.split_at_mut(c + strip);
             if strip == STRIP {
-                let columns: [&[f64]; STRIP] = std::array::from_fn(|k| &self.panel[(c + k) * height + c + strip..(c + k + 1) * height]);
+                let columns: [&[f64]; STRIP] =
+                    std::array::from_fn(|k| &self.panel[(c + k) * height + c + strip..(c + k + 1) * height]);
                 let (inner, outer) = (rest.len(), self.below.len());
                 axpy_strip::<P, FMA>(rest, std::array::from_fn(|k| &columns[k][..inner]), &y);
                 axpy_strip::<P, FMA>(self.below, std::array::from_fn(|k| &columns[k][inner..inner + outer]), &y);
@@ -265,12 +266,13 @@ impl<const P: usize> Kernel for Backward<'_, P> {
         let mut end = width;
         while end > 0 {
             // The odd strip is the last one, as in the forward sweep.
-            let strip = if end % STRIP == 0 { STRIP } else { end % STRIP };
+            let strip = if end.is_multiple_of(STRIP) { STRIP } else { end % STRIP };
             let c = end - strip;
             let mut sum = [[0.0; P]; STRIP];
             let (head, rest) = self.own.split_at_mut(end);
             if strip == STRIP {
-                let columns: [&[f64]; STRIP] = std::array::from_fn(|k| &self.panel[(c + k) * height + end..(c + k + 1) * height]);
+                let columns: [&[f64]; STRIP] =
+                    std::array::from_fn(|k| &self.panel[(c + k) * height + end..(c + k + 1) * height]);
                 let (inner, outer) = (rest.len(), self.below.len());
                 dot_strip::<P, FMA>(rest, std::array::from_fn(|k| &columns[k][..inner]), &mut sum);
                 dot_strip::<P, FMA>(self.below, std::array::from_fn(|k| &columns[k][inner..inner + outer]), &mut sum);

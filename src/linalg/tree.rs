@@ -10,8 +10,6 @@ pub(super) const NONE: u32 = u32::MAX;
 pub(super) struct EliminationTree {
     /// New position → vertex; postordered.
     pub(super) order: Vec<u32>,
-    /// Vertex → new position.
-    pub(super) position: Vec<u32>,
     /// Parent of each position; `NONE` at roots.
     pub(super) parent: Vec<u32>,
     /// Rows below the diagonal block of each position, counted in matrix rows.
@@ -47,7 +45,7 @@ impl EliminationTree {
                 }
             }
         }
-        Self { order, position, parent: renamed, below }
+        Self { order, parent: renamed, below }
     }
 
     /// Multiplications and additions of a Cholesky factorisation.

@@ -63,12 +63,8 @@ pub fn survey(fe: &FeModel) -> Survey {
             found[k] = if size > 0.0 && largest > 0.0 { force.column(k).norm() / (largest * size) } else { 0.0 };
         }
         residual = Some(found);
-        let held: Vec<&str> = ["x", "y", "z", "rx", "ry", "rz"]
-            .into_iter()
-            .zip(found)
-            .filter(|f| f.1 > HELD)
-            .map(|f| f.0)
-            .collect();
+        let held: Vec<&str> =
+            ["x", "y", "z", "rx", "ry", "rz"].into_iter().zip(found).filter(|f| f.1 > HELD).map(|f| f.0).collect();
         if !held.is_empty() {
             suspicions.push(format!(
                 "K resists rigid motion along {}: the export is constrained, a free-free export is needed for a body that moves",
@@ -103,7 +99,15 @@ pub fn survey(fe: &FeModel) -> Survey {
     if massless_rows > 0 {
         suspicions.push(format!("{massless_rows} dofs have stiffness and no mass: M is singular"));
     }
-    Survey { rigid, mass_by_axis: by_axis, rigid_residual: residual, empty_rows, massless_rows, negative_diagonal, suspicions }
+    Survey {
+        rigid,
+        mass_by_axis: by_axis,
+        rigid_residual: residual,
+        empty_rows,
+        massless_rows,
+        negative_diagonal,
+        suspicions,
+    }
 }
 
 fn entries_per_row(a: &SymSparse) -> Vec<usize> {
@@ -148,5 +152,7 @@ fn unit_suspicion(speed: f64) -> Option<String> {
     } else {
         "stiffness may be in larger units than the masses, or lengths in km"
     };
-    Some(format!("the matrices imply waves at about {speed:.1e} length units a second, where solids carry 1e2–1e4 m/s: {guess}"))
+    Some(format!(
+        "the matrices imply waves at about {speed:.1e} length units a second, where solids carry 1e2–1e4 m/s: {guess}"
+    ))
 }

@@ -38,9 +38,15 @@ impl RigidBody {
         // Steiner with the mass of each direction, so that partial models stay consistent.
         let c = centre;
         let steiner = Matrix3::new(
-            mz * c.y * c.y + my * c.z * c.z, -mz * c.x * c.y, -my * c.x * c.z,
-            -mz * c.x * c.y, mz * c.x * c.x + mx * c.z * c.z, -mx * c.y * c.z,
-            -my * c.x * c.z, -mx * c.y * c.z, my * c.x * c.x + mx * c.y * c.y,
+            mz * c.y * c.y + my * c.z * c.z,
+            -mz * c.x * c.y,
+            -my * c.x * c.z,
+            -mz * c.x * c.y,
+            mz * c.x * c.x + mx * c.z * c.z,
+            -mx * c.y * c.z,
+            -my * c.x * c.z,
+            -mx * c.y * c.z,
+            my * c.x * c.x + mx * c.y * c.y,
         );
         Some(Self { mass, centre: centre.into(), inertia: about_origin - steiner })
     }
@@ -107,7 +113,8 @@ mod tests {
         // Masses 1, 2, 3 kg at three points.
         let points = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.5, 0.0, 3.0]];
         let masses = [1.0, 2.0, 3.0];
-        let labels = (1..=3).flat_map(|n| Axis::ALL[..3].iter().map(move |&axis| Dof { node: NodeId(n), axis })).collect();
+        let labels =
+            (1..=3).flat_map(|n| Axis::ALL[..3].iter().map(move |&axis| Dof { node: NodeId(n), axis })).collect();
         let entries: Vec<_> = (0..9).map(|k| (k, k, masses[k / 3])).collect();
         let fe = FeModel {
             name: "points".into(),
@@ -120,7 +127,8 @@ mod tests {
         };
         let body = RigidBody::of(&fe).expect("labelled");
         let total = 6.0;
-        let c: Vector3<f64> = points.iter().zip(masses).map(|(p, m)| Vector3::from(*p) * m).sum::<Vector3<f64>>() / total;
+        let c: Vector3<f64> =
+            points.iter().zip(masses).map(|(p, m)| Vector3::from(*p) * m).sum::<Vector3<f64>>() / total;
         let mut inertia = Matrix3::zeros();
         for (p, m) in points.iter().zip(masses) {
             let r = Vector3::from(*p) - c;

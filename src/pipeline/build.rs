@@ -3,8 +3,7 @@
 use super::recipe::{Damping, NodeSpec, Recipe};
 use super::{PipelineError, output_file, summary_file};
 use crate::format::{
-    nearest, parse_toml, read_fe_model, reduced_to_bytes, summary_to_text, toml_error_at,
-    write_atomically,
+    nearest, parse_toml, read_fe_model, reduced_to_bytes, summary_to_text, toml_error_at, write_atomically,
 };
 use crate::modal::{DAMPING_PRESETS, DampingModel, ModalOptions, set_damping, solve};
 use crate::model::{
@@ -157,7 +156,10 @@ fn interface_nodes(recipe: &Recipe, fe: &FeModel) -> Result<Vec<InterfaceNode>, 
                 return Err((key.span(), format!("\"{name}\" names both a joint and a measured node")));
             }
             if name.is_empty() || name.contains([':', ' ', ',']) {
-                return Err((key.span(), format!("the name \"{name}\" cannot be used as in \"{name}:z\"; use letters, digits and -")));
+                return Err((
+                    key.span(),
+                    format!("the name \"{name}\" cannot be used as in \"{name}:z\"; use letters, digits and -"),
+                ));
             }
             all.push(interface_node(name, key.span(), role, spec, fe)?);
         }
@@ -165,7 +167,13 @@ fn interface_nodes(recipe: &Recipe, fe: &FeModel) -> Result<Vec<InterfaceNode>, 
     Ok(all)
 }
 
-fn interface_node(name: &str, key: Range<usize>, role: Role, spec: &NodeSpec, fe: &FeModel) -> Result<InterfaceNode, Located> {
+fn interface_node(
+    name: &str,
+    key: Range<usize>,
+    role: Role,
+    spec: &NodeSpec,
+    fe: &FeModel,
+) -> Result<InterfaceNode, Located> {
     match (&spec.node, &spec.set) {
         (Some(node), None) => InterfaceNode::single(fe, name, role, NodeId(*node.get_ref()))
             .map_err(|e| (node.span(), format!("{} \"{name}\": {e}", role.name()))),
@@ -188,10 +196,9 @@ fn interface_node(name: &str, key: Range<usize>, role: Role, spec: &NodeSpec, fe
 
 /// A transfer-path end "d:z" (interface node or FE label, and direction) with its modal row.
 pub fn path_of(analysed: &Analysed, text: &str) -> Result<PathEnd, String> {
-    let (name, axis) = text
-        .rsplit_once(':')
-        .and_then(|(n, a)| Some((n, Axis::parse(a)?)))
-        .ok_or_else(|| format!("found \"{text}\", expected NODE:DIRECTION such as \"d:z\", directions x y z rx ry rz"))?;
+    let (name, axis) = text.rsplit_once(':').and_then(|(n, a)| Some((n, Axis::parse(a)?))).ok_or_else(|| {
+        format!("found \"{text}\", expected NODE:DIRECTION such as \"d:z\", directions x y z rx ry rz")
+    })?;
     let modes = &analysed.modes;
     let row = match (analysed.nodes.iter().find(|n| n.name == name), name.parse::<u32>()) {
         (Some(node), _) => node
@@ -213,9 +220,7 @@ pub fn path_of(analysed: &Analysed, text: &str) -> Result<PathEnd, String> {
 pub fn build(mut analysed: Analysed, rule: Option<&Rule>, progress: &dyn Progress) -> Result<Built, PipelineError> {
     let clock = Instant::now();
     let settings = analysed.recipe.rank.clone();
-    let end = |text: &Spanned<String>| {
-        path_of(&analysed, text.get_ref()).map_err(|m| analysed.at(text.span(), m))
-    };
+    let end = |text: &Spanned<String>| path_of(&analysed, text.get_ref()).map_err(|m| analysed.at(text.span(), m));
     let mut paths = vec![TransferPath { input: end(&settings.input)?, output: end(&settings.output)? }];
     for [input, output] in &settings.also {
         paths.push(TransferPath { input: end(input)?, output: end(output)? });
@@ -226,7 +231,10 @@ pub fn build(mut analysed: Analysed, rule: Option<&Rule>, progress: &dyn Progres
     }
     let criterion = criterion(settings.criterion.get_ref()).ok_or_else(|| {
         let known = CRITERIA.iter().map(|c| c.name).collect::<Vec<_>>().join(", ");
-        analysed.at(settings.criterion.span(), format!("unknown criterion \"{}\"; the criteria are {known}", settings.criterion.get_ref()))
+        analysed.at(
+            settings.criterion.span(),
+            format!("unknown criterion \"{}\"; the criteria are {known}", settings.criterion.get_ref()),
+        )
     })?;
     let ranking = rank(&analysed.modes, criterion, &paths);
     let selection = select(&analysed.modes, &ranking, rule.unwrap_or(&analysed.recipe.select))?;

@@ -68,9 +68,7 @@ pub fn check(found: &ReducedModel, expected: &Expected) -> Check {
     let mut differences = Vec::new();
     let mut notes = Vec::new();
     if want != have {
-        let listed = |modes: Vec<ModeNo>| {
-            Selection { modes, reason: String::new(), warnings: Vec::new() }.ranges()
-        };
+        let listed = |modes: Vec<ModeNo>| Selection { modes, reason: String::new(), warnings: Vec::new() }.ranges();
         let missing: Vec<ModeNo> = want.iter().copied().filter(|m| !have.contains(m)).collect();
         let added: Vec<ModeNo> = have.iter().copied().filter(|m| !want.contains(m)).collect();
         let mut change = Vec::new();
@@ -132,7 +130,8 @@ pub fn check(found: &ReducedModel, expected: &Expected) -> Check {
         for source in &model.sources {
             match found.sources.iter().find(|s| s.role == source.role) {
                 Some(now) if now.sha256 == source.sha256 => {}
-                Some(now) => notes.push(format!("{} file {} is not the one it was made from (SHA-256 differs)", now.role, now.path)),
+                Some(now) => notes
+                    .push(format!("{} file {} is not the one it was made from (SHA-256 differs)", now.role, now.path)),
                 None => notes.push(format!("{} file {} is no longer used", source.role, source.path)),
             }
         }

@@ -39,7 +39,7 @@ impl PipelineError {
     /// Process exit code: 3 input, 4 numerics.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Modal(error) if error.is_numerics() => 4,
+            Self::Modal(ModalError::Factor(_) | ModalError::NotConverged { .. }) => 4,
             Self::Reduce(ReduceError::Residual(_)) => 4,
             Self::Simulate { error: SceneError::Numerics(_), .. } => 4,
             _ => 3,

@@ -93,7 +93,8 @@ pub fn reduce(method: &Method, made: &Made) -> Result<ReducedModel, ReduceError>
     };
     let kept: Vec<usize> = made.selection.modes.iter().map(|m| m.column()).collect();
     let rigid: Vec<usize> = (0..modes.rigid).collect();
-    let participation = |columns: &[usize]| DMatrix::from_fn(columns.len(), 3, |c, d| modes.participation[(columns[c], d)]);
+    let participation =
+        |columns: &[usize]| DMatrix::from_fn(columns.len(), 3, |c, d| modes.participation[(columns[c], d)]);
     let residual = match (method.residual, made.fe) {
         (false, _) => None,
         (true, None) => return Err(ReduceError::NoMatrices),

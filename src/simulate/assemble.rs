@@ -155,10 +155,11 @@ impl Assembly<'_> {
 
     /// Row over the jointed coordinates of "leaf:b:z" or "load:z", and its direction.
     pub(super) fn motion_row(&self, text: &str) -> Result<(DVector<f64>, Axis), SceneError> {
-        let (place, axis) = text
-            .rsplit_once(':')
-            .and_then(|(p, a)| Some((p, Axis::parse(a)?)))
-            .ok_or_else(|| SceneError::missing(format!("found \"{text}\", expected \"body:node:direction\" or \"body:direction\", such as \"leaf:b:z\"")))?;
+        let (place, axis) = text.rsplit_once(':').and_then(|(p, a)| Some((p, Axis::parse(a)?))).ok_or_else(|| {
+            SceneError::missing(format!(
+                "found \"{text}\", expected \"body:node:direction\" or \"body:direction\", such as \"leaf:b:z\""
+            ))
+        })?;
         let (body, node) = find(place, &self.bodies)?;
         let point = self.bodies[body].position(node)?;
         let row = self.bodies[body].motion(node, point, axis)?;
@@ -188,9 +189,12 @@ fn deflections(assembly: &Assembly) -> Vec<Deflection> {
         let length = model
             .nodes
             .iter()
-            .flat_map(|a| model.nodes.iter().map(move |b| {
-                (0..3).map(|d| (a.position[d] - b.position[d]).powi(2)).sum::<f64>().sqrt()
-            }))
+            .flat_map(|a| {
+                model
+                    .nodes
+                    .iter()
+                    .map(move |b| (0..3).map(|d| (a.position[d] - b.position[d]).powi(2)).sum::<f64>().sqrt())
+            })
             .fold(0.0, f64::max);
         let mut rows = DMatrix::zeros(3 * model.nodes.len(), assembly.basis.ncols());
         for (k, dof) in model.dofs.iter().enumerate().filter(|d| !d.1.axis.is_rotation()) {

@@ -10,7 +10,10 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// All bodies, flexible ones first, with their place in the scene's coordinates.
-pub(super) fn bodies<'a>(scene: &Scene, models: &'a BTreeMap<String, ReducedModel>) -> Result<Vec<Body<'a>>, SceneError> {
+pub(super) fn bodies<'a>(
+    scene: &Scene,
+    models: &'a BTreeMap<String, ReducedModel>,
+) -> Result<Vec<Body<'a>>, SceneError> {
     let mut bodies: Vec<Body<'a>> = Vec::new();
     // Flexible bodies first: rigid ones may stand at their nodes.
     for flexible in [true, false] {
@@ -83,7 +86,10 @@ fn rigid_body<'a>(
         SceneError::at(key.clone(), format!("body \"{name}\" has neither model nor mass; give one of them"))
     })?;
     if mass.get_ref().si <= 0.0 {
-        return Err(SceneError::at(mass.span(), format!("mass of \"{name}\" is {} kg, expected above zero", mass.get_ref().si)));
+        return Err(SceneError::at(
+            mass.span(),
+            format!("mass of \"{name}\" is {} kg, expected above zero", mass.get_ref().si),
+        ));
     }
     let inertia = match &spec.inertia {
         None => [0.0; 3],
@@ -101,7 +107,9 @@ fn rigid_body<'a>(
         (None, Some(given)) => {
             return Err(SceneError::at(
                 given.span(),
-                format!("body \"{name}\" can rotate (it has inertia) and needs a place: at = \"leaf:c\" or at = [x, y, z]"),
+                format!(
+                    "body \"{name}\" can rotate (it has inertia) and needs a place: at = \"leaf:c\" or at = [x, y, z]"
+                ),
             ));
         }
     };
@@ -131,4 +139,3 @@ pub(super) fn find<'t>(text: &'t str, bodies: &[Body]) -> Result<(usize, Option<
     })?;
     Ok((index, node))
 }
-

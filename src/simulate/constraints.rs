@@ -24,7 +24,10 @@ pub(super) fn constraints(assembly: &Assembly) -> Result<DMatrix<f64>, SceneErro
             .collect::<Result<_, _>>()
             .map_err(at_ends)?;
         if ends[0].is_none() && ends[1].is_none() {
-            return Err(SceneError::at(between.span(), format!("joint \"{}\" joins the ground to itself", name.get_ref())));
+            return Err(SceneError::at(
+                between.span(),
+                format!("joint \"{}\" joins the ground to itself", name.get_ref()),
+            ));
         }
         let point = match &joint.at {
             Some(at) => resolve(at.get_ref(), &assembly.bodies).map_err(|e| place(e, at.span()))?,
@@ -78,4 +81,3 @@ pub(super) fn jointed_modes(null: &DMatrix<f64>, omega: &DVector<f64>) -> (DMatr
     }
     (basis, stiffness)
 }
-

@@ -82,12 +82,7 @@ impl Balance {
         self.worst = self.worst.max(imbalance.abs());
     }
 
-    fn rates_at(
-        &mut self,
-        system: &System,
-        regimes: Option<&[Regime]>,
-        now: &Sample,
-    ) -> Rates {
+    fn rates_at(&mut self, system: &System, regimes: Option<&[Regime]>, now: &Sample) -> Rates {
         let forces = &now.forces;
         let mut rates = Rates::default();
         self.work.gemv(1.0, &system.damping, &now.velocity, 0.0);
@@ -157,7 +152,6 @@ impl Balance {
 fn stored(system: &System, now: &Sample) -> [f64; 3] {
     let kinetic = 0.5 * now.velocity.norm_squared();
     let strain = 0.5 * system.stiffness.iter().zip(now.position.iter()).map(|(l, w)| l * w * w).sum::<f64>();
-    let springs =
-        system.tires.iter().map(|t| t.normal.stored(-t.normal_row.dot(&now.position) - t.gap)).sum::<f64>();
+    let springs = system.tires.iter().map(|t| t.normal.stored(-t.normal_row.dot(&now.position) - t.gap)).sum::<f64>();
     [kinetic, strain, springs]
 }

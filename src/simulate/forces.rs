@@ -23,7 +23,9 @@ pub(super) fn tires(assembly: &Assembly) -> Result<Vec<Tire>, SceneError> {
     })?;
     let table = table.get_ref();
     let (stiffness, damping) = (table.stiffness.get_ref().si, table.damping.get_ref().si);
-    for (key, value, span) in [("stiffness", stiffness, table.stiffness.span()), ("damping", damping, table.damping.span())] {
+    for (key, value, span) in
+        [("stiffness", stiffness, table.stiffness.span()), ("damping", damping, table.damping.span())]
+    {
         if value < 0.0 {
             return Err(SceneError::at(span, format!("tire {key} is {value}, expected zero or above")));
         }
@@ -94,7 +96,9 @@ pub(super) fn applied(assembly: &Assembly) -> Result<Vec<(AppliedForce, DVector<
         return Ok(Vec::new());
     }
     if scene.effect.applied_force.is_empty() {
-        return Err(SceneError::missing("effect \"applied-force\" is on without parameters; add [[effect.applied-force]]"));
+        return Err(SceneError::missing(
+            "effect \"applied-force\" is on without parameters; add [[effect.applied-force]]",
+        ));
     }
     let mut all = Vec::new();
     for table in &scene.effect.applied_force {
@@ -139,4 +143,3 @@ pub(super) fn load_cases(applied: &[(AppliedForce, DVector<f64>)]) -> Result<usi
     }
     Ok(cases)
 }
-

@@ -36,14 +36,18 @@ pub(super) fn held(text: &str) -> Result<Vec<Axis>, String> {
     for word in text.split([' ', ',']).filter(|w| !w.is_empty()) {
         let axis = Axis::parse(word).ok_or_else(|| {
             let presets = PRESETS.iter().map(|p| p.name).collect::<Vec<_>>().join(", ");
-            format!("found \"{word}\" in holds = \"{text}\", expected directions among x y z rx ry rz, or one of {presets}")
+            format!(
+                "found \"{word}\" in holds = \"{text}\", expected directions among x y z rx ry rz, or one of {presets}"
+            )
         })?;
         if !axes.contains(&axis) {
             axes.push(axis);
         }
     }
     if axes.is_empty() {
-        return Err("holds is empty: the joint would hold nothing; name directions such as \"x y z\" or remove it".into());
+        return Err(
+            "holds is empty: the joint would hold nothing; name directions such as \"x y z\" or remove it".into()
+        );
     }
     Ok(axes)
 }

@@ -115,10 +115,7 @@ fn statics(system: &System) -> Result<Trajectory, SceneError> {
                 datum: "start".into(),
                 at_rest: values.last().copied(),
                 extremes: Vec::new(),
-                range: [
-                    at(values.iter().copied().reduce(f64::min)),
-                    at(values.iter().copied().reduce(f64::max)),
-                ],
+                range: [at(values.iter().copied().reduce(f64::min)), at(values.iter().copied().reduce(f64::max))],
                 values,
             }
         })

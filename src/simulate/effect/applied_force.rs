@@ -25,7 +25,11 @@ impl AppliedForce {
         match self {
             Self::Constant(values) => values.first().copied().unwrap_or(0.0),
             Self::HalfSine { peak, duration } => {
-                if (0.0..=*duration).contains(&t) { peak * (std::f64::consts::PI * t / duration).sin() } else { 0.0 }
+                if (0.0..=*duration).contains(&t) {
+                    peak * (std::f64::consts::PI * t / duration).sin()
+                } else {
+                    0.0
+                }
             }
             Self::Table(points) => {
                 let after = points.partition_point(|p| p.0 < t);

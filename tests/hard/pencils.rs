@@ -1,0 +1,1 @@
+//! Random pencils with known spectra.
