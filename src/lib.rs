@@ -26,14 +26,14 @@
 //! linalg   <-
 //! model    <- linalg
 //! frf      <- model
-//! format   <- linalg model quantity
+//! format   <- linalg model
 //! modal    <- linalg model
 //! rank     <- frf model
-//! reduce   <- frf linalg model
+//! reduce   <- linalg model
 //! simulate <- linalg model quantity
 //! report   <- frf model
-//! pipeline <- format frf linalg modal model quantity rank reduce
-//! cli      <- format frf linalg modal model pipeline quantity rank reduce report simulate
+//! pipeline <- format modal model quantity rank reduce simulate
+//! cli      <- format frf modal model pipeline quantity rank reduce report simulate
 //! main     <- cli
 //! ```
 

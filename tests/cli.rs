@@ -160,8 +160,8 @@ fn scenes_that_cannot_be_built_name_the_line() {
     let reduced = at_root("reduced/leaf-spring.h5");
     let scene = scene.replace("../../reduced/leaf-spring.h5", reduced.to_str().expect("UTF-8"));
     let cases: [(&str, &str, &[&str]); 8] = [
-        ("step = \"1 ms\"", "step = \"0 ms\"", &[":19", "above zero"]),
-        ("\"tire-lateral\",\n]", "\"tire-latteral\",\n]", &[":14", "tire-lateral"]),
+        ("step = \"1 ms\"", "step = \"0 ms\"", &[":16", "above zero"]),
+        ("\"tire-lateral\",\n]", "\"tire-latteral\",\n]", &[":11", "tire-lateral"]),
         ("between = [\"load\", \"leaf:b\"]", "between = [\"load\", \"leaf:q\"]", &["leaf", "\"q\""]),
         ("mass = \"100 kg\"", "mass = \"0 kg\"", &["0 kg", "above zero"]),
         ("stiffness = \"75000 N/m\"", "stiffness = \"-75000 N/m\"", &["stiffness", "-75000"]),

@@ -58,7 +58,7 @@ pub(super) fn compute(
     let analysis = Arc::new(Analysis::new(k, m, groups(&fe.dofs).as_deref())?);
     let note = format!("{}, {:.2e} operations", analysis.ordering(), analysis.flops());
     report.add("ordering", since, 0, note);
-    let mut warnings = Vec::new();
+    let warnings = Vec::new();
     let mut shift = start.shift;
     for attempt in 0..=MOVES + 1 {
         let since = Instant::now();
@@ -94,9 +94,6 @@ pub(super) fn compute(
         };
         match found {
             Err(better) => {
-                if attempt > 0 || start.shift == shift {
-                    warnings.extend(moved(shift, better, attempt));
-                }
                 report.add("lanczos", since, 0, format!("shift {shift:.4e} badly placed, moved to {better:.4e}"));
                 shift = better;
             }
@@ -119,12 +116,6 @@ pub(super) fn compute(
         }
     }
     Err(ModalError::BadShift(shift))
-}
-
-/// A move by more than four powers of ten is worth telling.
-fn moved(from: f64, to: f64, attempt: usize) -> Option<String> {
-    let far = (from / to).ln().abs() > 9.0;
-    (far && attempt > 0).then(|| format!("the shift {from:.3e} was badly placed and moved to {to:.3e} (rad/s)²"))
 }
 
 fn note_of(pairs: &EigenPairs, dense: bool) -> String {

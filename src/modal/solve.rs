@@ -209,6 +209,9 @@ struct Parts {
     shift: f64,
 }
 
+/// Relative error of the first elastic ω² by rounding of the file above which the user is told.
+const TOLD: f64 = 1e-4;
+
 /// Puts rigid and elastic shapes together and measures them.
 fn finish(fe: &FeModel, pairs: Pairs, parts: Parts) -> Modes {
     let (rigid, count) = (parts.rigid.min(parts.count), parts.count);
@@ -225,11 +228,14 @@ fn finish(fe: &FeModel, pairs: Pairs, parts: Parts) -> Modes {
         let elastic = shapes.columns(rigid, count - rigid).into_owned();
         let overlap = heavy.transpose() * &elastic;
         shapes.columns_mut(rigid, count - rigid).copy_from(&(elastic - &exact * &overlap));
-        let coupling = overlap.amax();
-        if coupling > 1e-4 {
+        // What rounding of K moves the first elastic ω² by: the same sum as for the rigid ones.
+        let moved = (rigid < count)
+            .then(|| shapes.column(rigid).into_owned())
+            .map_or(0.0, |phi| noise(k, phi.as_slice(), rounding(parts.digits)) / pairs.lambda[rigid]);
+        if moved > TOLD {
             warnings.push(format!(
-                "the stiffness file carries {} digits, too few for its rigid motions: rounding mixes {:.1e} of them into the elastic modes, and the lowest ω² are good to about {:.0e}",
-                parts.digits, coupling, 10.0 * coupling
+                "the stiffness file carries {} digits, too few for this structure: its rounding moves the first elastic ω² by about {moved:.0e} of itself; export with more digits",
+                parts.digits
             ));
         }
         projection = Some((exact, heavy));

@@ -98,7 +98,7 @@ fn static_response(
             }
             return Err(ResidualError::NoConvergence { change, iterations });
         }
-        let mut next = &free_force + fe.mass.mul_block(&response) * shift;
+        let mut next = &free_force - fe.mass.mul_block(&response) * shift;
         factor.solve_in_place(&mut next);
         let drift = mass_phi.transpose() * &next;
         next -= phi * drift;

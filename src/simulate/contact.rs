@@ -184,8 +184,8 @@ fn solve_in_place(a: &mut [f64], b: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::effect::{TireLateral, TireNormal};
     use super::*;
+    use crate::simulate::effect::{TireLateral, TireNormal};
     use nalgebra::DVector;
 
     fn tire() -> Tire {

@@ -4,7 +4,10 @@ use crate::quantity::{
     Acceleration, Damping, Force, ForcePerAngle, Inertia, Length, Mass, Quantity, Ratio, Speed, Stiffness, Time,
 };
 use serde::Deserialize;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, Deserializer, IntoDeserializer, SeqAccess, Visitor};
 use std::collections::BTreeMap;
+use std::fmt;
 use toml::Spanned;
 
 /// One scene file.
@@ -78,8 +81,7 @@ pub struct RunSettings {
 }
 
 /// A point: a named node ("leaf:c") or coordinates.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug)]
 pub enum Place {
     /// "body:node".
     Node(String),
@@ -189,13 +191,65 @@ pub struct AppliedForceTable {
 }
 
 /// One force or one per load case.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug)]
 pub enum ForceValues {
     /// The same in every case.
     One(Quantity<Force>),
     /// One per case.
     Cases(Vec<Quantity<Force>>),
+}
+
+// Not serde's untagged: its errors do not say what is wrong with the value.
+impl<'de> Deserialize<'de> for Place {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Read;
+        impl<'de> Visitor<'de> for Read {
+            type Value = Place;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a node such as \"leaf:c\" or three coordinates [x, y, z]")
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<Place, E> {
+                Ok(Place::Node(text.to_string()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Place, A::Error> {
+                Deserialize::deserialize(SeqAccessDeserializer::new(seq)).map(Place::Position)
+            }
+        }
+        deserializer.deserialize_any(Read)
+    }
+}
+
+impl<'de> Deserialize<'de> for ForceValues {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Read;
+        impl<'de> Visitor<'de> for Read {
+            type Value = ForceValues;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a force such as \"10 N\", or one per load case [\"10 N\", \"20 N\"]")
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<ForceValues, E> {
+                Quantity::deserialize(text.into_deserializer()).map(ForceValues::One)
+            }
+
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<ForceValues, E> {
+                Quantity::deserialize(value.into_deserializer()).map(ForceValues::One)
+            }
+
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<ForceValues, E> {
+                self.visit_f64(value as f64)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ForceValues, A::Error> {
+                Deserialize::deserialize(SeqAccessDeserializer::new(seq)).map(ForceValues::Cases)
+            }
+        }
+        deserializer.deserialize_any(Read)
+    }
 }
 
 /// `[start]`.

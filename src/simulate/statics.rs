@@ -14,6 +14,9 @@ pub(super) struct Equilibrium {
 /// A motion with less than this share of the largest stiffness has none (a mechanism).
 const NO_STIFFNESS: f64 = 1e-13;
 
+/// A diagonal below this share of the largest is rounding: stiffnesses of one system span 1e9.
+const ROUNDING: f64 = 1e-16;
+
 /// The equilibrium under the weight and given forces (one value per applied force), side forces of
 /// the tyres zero. `None` in words when something falls or slides without end.
 ///

@@ -1,8 +1,8 @@
 //! The exact propagators of a step and of its halves, quarters, … down to the locating resolution.
 
-use super::super::contact::{FORCES, MOTIONS};
-use super::super::system::System;
 use crate::linalg::Propagator;
+use crate::simulate::contact::{FORCES, MOTIONS};
+use crate::simulate::system::System;
 use nalgebra::{DMatrix, DVector};
 
 /// Touchdown and lift-off are located to the step divided by 2 to this power. At 1 ms that is 15 ns,

@@ -3,10 +3,10 @@
 //! Second order; the linear part is exact at any step. Where a tyre touches down or lifts off inside
 //! a step, the step is split there, by halving, to step/2^16.
 
-use super::super::contact::{ContactSolver, FORCES, MOTIONS, Regime};
-use super::super::energy::Balance;
-use super::super::system::System;
 use super::block::{Blocks, DEPTH};
+use crate::simulate::contact::{ContactSolver, FORCES, MOTIONS, Regime};
+use crate::simulate::energy::Balance;
+use crate::simulate::system::System;
 use nalgebra::DVector;
 
 /// Events located within one step; beyond, the rest of the step uses the one-sided law unlocated
