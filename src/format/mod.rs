@@ -7,9 +7,13 @@
 
 mod atomic;
 mod calculix;
+mod dat;
+mod eig;
 mod error;
 mod fe_model;
+mod frd;
 mod h5;
+mod imported;
 mod inp;
 mod input;
 mod matrix_market;
@@ -22,8 +26,12 @@ mod triplets;
 
 pub use atomic::write_atomically;
 pub use calculix::read_dof_map;
+pub use dat::{DatMode, read_dat};
+pub use eig::read_eig;
 pub use error::{Fault, FormatError, Place};
 pub use fe_model::{FeFiles, FileUnits, read_fe_model, read_symmetric};
+pub use frd::read_frd;
+pub use imported::ImportedModes;
 pub use inp::{Mesh, read_mesh};
 pub use reduced_h5::{read_reduced, reduced_to_bytes};
 pub use summary::{
@@ -43,6 +51,8 @@ pub enum Holds {
     Dofs,
     /// Nodes and node sets.
     Mesh,
+    /// Natural frequencies, mostly with shapes.
+    Modes,
     /// A reduced model.
     ReducedModel,
     /// The readable summary of a reduced model.
@@ -58,6 +68,7 @@ impl Holds {
             Self::Matrix => "matrix",
             Self::Dofs => "dof list",
             Self::Mesh => "mesh",
+            Self::Modes => "modes",
             Self::ReducedModel => "reduced model",
             Self::Summary => "summary",
             Self::Trajectory => "trajectory",
@@ -123,10 +134,10 @@ pub const FORMATS: &[Format] = &[
         detect: |head| head.starts_with(b"time [s]"),
     },
     Format {
-        name: "calculix-matrix",
+        name: "triplets",
         holds: Holds::Matrix,
-        suffixes: &["sti", "mas"],
-        help: "CalculiX *FREQUENCY, SOLVER=MATRIXSTORAGE: row, column, value",
+        suffixes: &["sti", "mas", "mtx"],
+        help: "row, column, value: CalculiX SOLVER=MATRIXSTORAGE, Abaqus *MATRIX OUTPUT, FORMAT=COORDINATE",
         reads: true,
         writes: false,
         detect: calculix::looks_like_matrix,
@@ -148,6 +159,33 @@ pub const FORMATS: &[Format] = &[
         reads: true,
         writes: false,
         detect: inp::looks_like,
+    },
+    Format {
+        name: "frd",
+        holds: Holds::Modes,
+        suffixes: &["frd"],
+        help: "CalculiX results, ascii or binary: nodes and mode shapes",
+        reads: true,
+        writes: false,
+        detect: frd::looks_like,
+    },
+    Format {
+        name: "eig",
+        holds: Holds::Modes,
+        suffixes: &["eig"],
+        help: "CalculiX *FREQUENCY, STORAGE=YES: modes in double precision (needs the dof list; nothing in it to detect)",
+        reads: true,
+        writes: false,
+        detect: |_| false,
+    },
+    Format {
+        name: "dat",
+        holds: Holds::Modes,
+        suffixes: &["dat"],
+        help: "CalculiX printed output: the eigenvalue table, without shapes",
+        reads: true,
+        writes: false,
+        detect: dat::looks_like,
     },
     Format {
         name: "summary",
