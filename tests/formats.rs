@@ -9,6 +9,7 @@ mod oracles;
 mod reduced;
 mod toml_files;
 mod trajectory;
+mod uff;
 
 use ferrom::format::FormatError;
 use std::fs;

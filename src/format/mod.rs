@@ -23,6 +23,8 @@ mod summary;
 mod toml_file;
 mod trajectory;
 mod triplets;
+mod uff;
+mod uff55;
 
 pub use atomic::write_atomically;
 pub use calculix::read_dof_map;
@@ -39,6 +41,8 @@ pub use summary::{
 };
 pub use toml_file::{nearest, parse_toml, toml_error_at};
 pub use trajectory::{trajectory_to_csv, trajectory_to_h5};
+pub use uff::{TestData, read_uff};
+pub use uff55::{TestMode, uff55_to_text};
 
 use std::path::Path;
 
@@ -53,6 +57,8 @@ pub enum Holds {
     Mesh,
     /// Natural frequencies, mostly with shapes.
     Modes,
+    /// Modes and positions of a test.
+    Test,
     /// A reduced model.
     ReducedModel,
     /// The readable summary of a reduced model.
@@ -69,6 +75,7 @@ impl Holds {
             Self::Dofs => "dof list",
             Self::Mesh => "mesh",
             Self::Modes => "modes",
+            Self::Test => "test",
             Self::ReducedModel => "reduced model",
             Self::Summary => "summary",
             Self::Trajectory => "trajectory",
@@ -186,6 +193,15 @@ pub const FORMATS: &[Format] = &[
         reads: true,
         writes: false,
         detect: dat::looks_like,
+    },
+    Format {
+        name: "uff",
+        holds: Holds::Test,
+        suffixes: &["unv", "uff"],
+        help: "universal file: nodes 15, 2411; units 164; modes 55, real and complex",
+        reads: true,
+        writes: true,
+        detect: uff::looks_like,
     },
     Format {
         name: "summary",
