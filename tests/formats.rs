@@ -2,6 +2,7 @@
 
 mod calculix;
 mod fe_model;
+mod harwell_boeing;
 mod matrix_market;
 mod mesh;
 mod modes;

@@ -13,6 +13,7 @@ mod error;
 mod fe_model;
 mod frd;
 mod h5;
+mod harwell_boeing;
 mod imported;
 mod inp;
 mod input;
@@ -139,6 +140,15 @@ pub const FORMATS: &[Format] = &[
         reads: false,
         writes: true,
         detect: |head| head.starts_with(b"time [s]"),
+    },
+    Format {
+        name: "harwell-boeing",
+        holds: Holds::Matrix,
+        suffixes: &["rsa", "rua", "rb", "hb"],
+        help: "Harwell-Boeing, Rutherford-Boeing, ANSYS HBMAT: real, assembled, symmetric or with symmetric values",
+        reads: true,
+        writes: false,
+        detect: harwell_boeing::looks_like,
     },
     Format {
         name: "triplets",

@@ -85,3 +85,20 @@ fn trap_19_matrix_market_junk_is_refused_and_real_files_are_read() {
         assert_says(result, line, words);
     }
 }
+
+#[test]
+fn trap_11_harwell_boeing_formats_and_the_fifth_header_line() {
+    for name in ["bcsstk01.rsa", "lund_a.rsa"] {
+        let Some(expected) = oracle(&format!("harwellboeing__{name}")) else { return };
+        agrees(&format!("harwellboeing/{name}"), &expected["matrix"]);
+    }
+    let refused: [(&str, usize, &[&str]); 3] = [
+        ("harwellboeing/utm300.rua", 0, &["not symmetric"]),
+        ("harwellboeing/well1850.rra", 3, &["RRA", "square"]),
+        ("rutherfordboeing/commanche_dual.rb", 3, &["PSA", "no values"]),
+    ];
+    for (name, line, words) in refused {
+        let Some(path) = shared(&format!("formats/{name}")) else { return };
+        assert_says(read_symmetric(&path, "matrix"), line, words);
+    }
+}
