@@ -1,6 +1,7 @@
 //! What other programs wrote is read as they meant it.
 
 mod calculix;
+mod exports;
 mod fe_model;
 mod harwell_boeing;
 mod matrix_market;

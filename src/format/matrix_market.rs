@@ -12,6 +12,7 @@ use nom::bytes::complete::tag_no_case;
 use nom::character::complete::{alpha1, space0, space1, u64 as integer};
 use nom::combinator::all_consuming;
 use nom::sequence::{preceded, terminated};
+use std::fmt::Write;
 use std::path::Path;
 
 type Text<'a> = nom::error::Error<&'a str>;
@@ -153,6 +154,20 @@ impl Reader {
             Symmetry::General => self.halves.into_symmetrised(order),
         }
     }
+}
+
+/// The lower triangle as a MatrixMarket file; every number reads back to the same bits.
+pub fn symmetric_to_matrix_market(matrix: &SymSparse) -> String {
+    // A column of the stored upper triangle is a row of the lower one: rows ascending is as good an order.
+    let mut text =
+        format!("%%MatrixMarket matrix coordinate real symmetric\n{0} {0} {1}\n", matrix.order(), matrix.stored());
+    for j in 0..matrix.order() {
+        for (i, value) in matrix.column(j) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{} {} {value:e}", j + 1, i + 1);
+        }
+    }
+    text
 }
 
 /// The first line: what the file says it holds.

@@ -5,6 +5,7 @@
 //! found, what was expected and what to do. Writers return bytes or text; only
 //! [`write_atomically`] touches the disk.
 
+mod arrays;
 mod atomic;
 mod calculix;
 mod dat;
@@ -17,7 +18,10 @@ mod harwell_boeing;
 mod imported;
 mod inp;
 mod input;
+mod json;
+mod mat5;
 mod matrix_market;
+mod npz;
 mod number;
 mod reduced_h5;
 mod summary;
@@ -36,6 +40,10 @@ pub use fe_model::{FeFiles, FileUnits, read_fe_model, read_symmetric};
 pub use frd::read_frd;
 pub use imported::ImportedModes;
 pub use inp::{Mesh, read_mesh};
+pub use json::reduced_to_json;
+pub use mat5::reduced_to_mat5;
+pub use matrix_market::symmetric_to_matrix_market;
+pub use npz::reduced_to_npz;
 pub use reduced_h5::{read_reduced, reduced_to_bytes};
 pub use summary::{
     Summary, SummaryMode, SummaryNode, SummaryRigid, SummaryScore, SummarySelection, read_summary, summary_to_text,
@@ -111,7 +119,7 @@ pub const FORMATS: &[Format] = &[
         suffixes: &["mtx"],
         help: "MatrixMarket coordinate, real or integer, symmetric or general with symmetric values",
         reads: true,
-        writes: false,
+        writes: true,
         detect: matrix_market::looks_like,
     },
     Format {
@@ -122,6 +130,33 @@ pub const FORMATS: &[Format] = &[
         reads: true,
         writes: true,
         detect: |head| is_hdf5(head) && contains(head, b"ferrom reduced model"),
+    },
+    Format {
+        name: "mat",
+        holds: Holds::ReducedModel,
+        suffixes: &["mat"],
+        help: "reduced model as MATLAB variables (version 5)",
+        reads: false,
+        writes: true,
+        detect: |head| head.starts_with(b"MATLAB 5.0 MAT-file"),
+    },
+    Format {
+        name: "npz",
+        holds: Holds::ReducedModel,
+        suffixes: &["npz"],
+        help: "reduced model as NumPy arrays",
+        reads: false,
+        writes: true,
+        detect: |head| head.starts_with(b"PK\x03\x04") && contains(head, b".npy"),
+    },
+    Format {
+        name: "json",
+        holds: Holds::ReducedModel,
+        suffixes: &["json"],
+        help: "reduced model as one JSON object",
+        reads: false,
+        writes: true,
+        detect: |head| head.trim_ascii_start().starts_with(b"{") && contains(head, b"\"omega\""),
     },
     Format {
         name: "trajectory",
