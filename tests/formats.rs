@@ -65,10 +65,15 @@ pub fn leaf(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("models/leaf-spring").join(name)
 }
 
-/// A file of the collection beside the repository, where it is there; says so where not.
+/// A file of tests/data, or else of the collection beside the repository; says so where there is none.
 #[allow(clippy::print_stdout)] // a test that checks nothing must say so
 pub fn shared(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared").join(name);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let own = root.join("tests/data").join(name);
+    if own.is_file() {
+        return Some(own);
+    }
+    let path = root.join("../shared").join(name);
     if !path.exists() {
         println!("{name}: skipped, not here");
     }
