@@ -1,12 +1,17 @@
 //! What other programs wrote is read as they meant it.
 
 mod calculix;
+mod exports;
 mod fe_model;
+mod harwell_boeing;
 mod matrix_market;
 mod mesh;
+mod modes;
+mod oracles;
 mod reduced;
 mod toml_files;
 mod trajectory;
+mod uff;
 
 use ferrom::format::FormatError;
 use std::fs;
@@ -60,6 +65,21 @@ pub fn leaf(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("models/leaf-spring").join(name)
 }
 
+/// A file of tests/data, or else of the collection beside the repository; says so where there is none.
+#[allow(clippy::print_stdout)] // a test that checks nothing must say so
+pub fn shared(name: &str) -> Option<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let own = root.join("tests/data").join(name);
+    if own.is_file() {
+        return Some(own);
+    }
+    let path = root.join("../shared").join(name);
+    if !path.exists() {
+        println!("{name}: skipped, not here");
+    }
+    path.exists().then_some(path)
+}
+
 #[test]
 fn every_row_of_the_table_is_named_once_and_says_what_it_is() {
     let mut names: Vec<&str> = ferrom::format::FORMATS.iter().map(|f| f.name).collect();
@@ -75,7 +95,7 @@ fn formats_are_told_by_content_not_by_name() {
     let folder = Folder::new();
     let cases = [
         ("a.txt", "%%matrixmarket matrix coordinate real symmetric\n1 1 1\n1 1 2.0\n", Some("matrix-market")),
-        ("b.mtx", "1 1 2.0\n1 2 0.0\n2 2 1.0D+00\n", Some("calculix-matrix")),
+        ("b.mtx", "1 1 2.0\n1 2 0.0\n2 2 1.0D+00\n", Some("triplets")),
         ("c.csv", "12.1\n12.2\n", Some("calculix-dofs")),
         ("d.sti", "** comment\n*NODE\n1, 0, 0, 0\n", Some("inp")),
         ("e.inp", "time [s],z [m]\n0.0,1.0\n", Some("csv")),
@@ -86,9 +106,7 @@ fn formats_are_told_by_content_not_by_name() {
         let found = ferrom::format::detect(&path).expect("readable").map(|f| f.name);
         assert_eq!(found, expected, "{name}");
     }
-    for (name, expected) in
-        [("leaf.sti.gz", "calculix-matrix"), ("leaf.dof.gz", "calculix-dofs"), ("leaf_mesh.inp", "inp")]
-    {
+    for (name, expected) in [("leaf.sti.gz", "triplets"), ("leaf.dof.gz", "calculix-dofs"), ("leaf_mesh.inp", "inp")] {
         assert_eq!(ferrom::format::detect(&leaf(name)).expect("readable").map(|f| f.name), Some(expected));
     }
 }

@@ -1,11 +1,12 @@
-//! CalculiX `*FREQUENCY, SOLVER=MATRIXSTORAGE`: .sti, .mas (matrices) and .dof (what the rows mean).
+//! CalculiX `*FREQUENCY, SOLVER=MATRIXSTORAGE`: .sti, .mas (matrices) and .dof (what the rows mean);
+//! Abaqus `*MATRIX OUTPUT, FORMAT=COORDINATE` (.mtx) is the same with both triangles.
 //!
 //! Matrices: one line "row column value" per entry, counted from 1, no header, one triangle with the
-//! whole diagonal, zeros included. Dof list: line k is `node.direction` of row k, two integers.
+//! whole diagonal, zeros included (Abaqus: both triangles). Dof list: line k is `node.direction` of row k, two integers.
 
 use super::error::{Fault, FormatError, Place, quote};
 use super::input::Input;
-use super::triplets::{Triangle, cut_line, each_record};
+use super::triplets::{Halves, cut_line, each_record};
 use crate::linalg::SymSparse;
 use crate::model::{Axis, Dof, DofMap, NodeId, Source};
 use nom::Parser;
@@ -35,7 +36,7 @@ fn first_line(head: &[u8]) -> Option<&[u8]> {
 
 /// Reads the triplets of an open file; the order is the largest index.
 pub(super) fn read_matrix(path: &Path, input: Input, tell: &dyn Fn(usize)) -> Result<(SymSparse, String), FormatError> {
-    let mut entries = Triangle::default();
+    let mut entries = Halves::default();
     let mut line = 0;
     let mut done = 0;
     let hash = input.each_chunk(path, |chunk| {
@@ -46,27 +47,27 @@ pub(super) fn read_matrix(path: &Path, input: Input, tell: &dyn Fn(usize)) -> Re
     finish(entries, line).map(|matrix| (matrix, hash)).map_err(|fault| fault.in_file(path))
 }
 
-fn finish(entries: Triangle, lines: usize) -> Result<SymSparse, Fault> {
-    if entries.seen == 0 {
+fn finish(entries: Halves, lines: usize) -> Result<SymSparse, Fault> {
+    let largest = entries.largest();
+    if entries.seen() == 0 {
         return Err(Fault::new("the file is empty")
             .expected("lines of row, column and value")
             .cure("did the export run to its end?"));
     }
-    if (entries.diagonals as u64) < u64::from(entries.largest) {
-        let (row, col) = entries.last();
-        let missing = entries.missing_diagonal().unwrap_or(entries.largest);
+    if (entries.upper.diagonals as u64) < u64::from(largest) {
+        let (row, col) = entries.last;
+        let missing = entries.upper.missing_diagonal(largest).unwrap_or(largest);
         let place = Place::Line(lines);
         let fault = if missing == row.max(col) {
             Fault::new(format!("the file ends at entry ({row}, {col}), before the diagonal of column {missing}"))
                 .cure("it was probably cut short: copy or export it again")
         } else {
-            Fault::new(format!("the file ends without a diagonal entry for row {missing} of {}", entries.largest))
+            Fault::new(format!("the file ends without a diagonal entry for row {missing} of {largest}"))
                 .cure("export it again, or write the matrix in MatrixMarket format, which states its size")
         };
         return Err(Fault { place, ..fault }.expected("the whole diagonal, as CalculiX writes it"));
     }
-    let order = entries.largest as usize;
-    entries.into_matrix(order)
+    entries.into_matrix(largest as usize)
 }
 
 /// Reads a dof list; a label that stands twice is refused with both lines.

@@ -2,7 +2,7 @@
 
 use super::error::{Fault, FormatError, Place};
 use super::input::Input;
-use super::{calculix, inp, matrix_market};
+use super::{calculix, harwell_boeing, inp, matrix_market};
 use crate::linalg::SymSparse;
 use crate::model::{DofMap, FeModel, Progress, Source};
 use std::collections::BTreeMap;
@@ -44,7 +44,7 @@ impl Default for FileUnits {
 }
 
 /// Reads a symmetric matrix: .sti or .mas triplets, or MatrixMarket (real or integer; symmetric, or
-/// general when its values are), plain or .gz, told by content. `role` goes into the source.
+/// general when its values are), or Harwell-Boeing; plain or .gz, told by content. `role` goes into the source.
 pub fn read_symmetric(path: &Path, role: &str) -> Result<(SymSparse, Source), FormatError> {
     read_matrix(path, role, &|_| {})
 }
@@ -55,6 +55,8 @@ fn read_matrix(path: &Path, role: &str, tell: &dyn Fn(usize)) -> Result<(SymSpar
     let head = input.head();
     let read = if matrix_market::looks_like(head) {
         matrix_market::read_matrix(path, input, tell)
+    } else if harwell_boeing::looks_like(head) {
+        harwell_boeing::read_matrix(path, input, tell)
     } else if head.trim_ascii().is_empty() {
         return Err(Fault::new("the file is empty")
             .expected("a matrix")

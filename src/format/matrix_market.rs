@@ -5,22 +5,18 @@
 
 use super::error::{Fault, FormatError, Place, quote};
 use super::input::Input;
-use super::triplets::{Triangle, each_record, sparse_fault};
+use super::triplets::{Halves, each_record};
 use crate::linalg::SymSparse;
 use nom::Parser;
 use nom::bytes::complete::tag_no_case;
 use nom::character::complete::{alpha1, space0, space1, u64 as integer};
 use nom::combinator::all_consuming;
 use nom::sequence::{preceded, terminated};
+use std::fmt::Write;
 use std::path::Path;
 
 type Text<'a> = nom::error::Error<&'a str>;
 
-/// A general matrix is taken as symmetric when its triangles agree to this share of the larger of
-/// the two entries (programs print 10 to 17 digits) …
-const ENTRY_TOLERANCE: f64 = 1e-9;
-/// … or to this share of the largest entry of the matrix (rounding of sums of large terms).
-const MATRIX_TOLERANCE: f64 = 1e-13;
 /// Stored entries can be fewer than rows (a mass on a few nodes), but a header that claims this many
 /// rows per entry is not believed, so that it cannot make the reader allocate at will.
 const ROWS_PER_ENTRY: u64 = 1000;
@@ -48,8 +44,7 @@ struct Header {
 /// Reads an open file.
 pub(super) fn read_matrix(path: &Path, input: Input, tell: &dyn Fn(usize)) -> Result<(SymSparse, String), FormatError> {
     let size = input.size;
-    let mut reader =
-        Reader { header: None, symmetry: None, line: 0, near: Triangle::default(), far: Triangle::default() };
+    let mut reader = Reader { header: None, symmetry: None, line: 0, halves: Halves::default() };
     let mut done = 0;
     let hash = input.each_chunk(path, |chunk| {
         done += chunk.len();
@@ -64,10 +59,8 @@ struct Reader {
     header: Option<Header>,
     /// Lines read.
     line: usize,
-    /// The only triangle of a symmetric file; of a general one the upper triangle with the diagonal.
-    near: Triangle,
-    /// The lower triangle of a general file.
-    far: Triangle,
+    /// Of a symmetric file, whose triangle may be either, only `upper` is used.
+    halves: Halves,
 }
 
 impl Reader {
@@ -82,20 +75,20 @@ impl Reader {
             chunk = &chunk[end..];
         }
         let Some(header) = &self.header else { return Ok(()) };
-        let (near, far) = (&mut self.near, &mut self.far);
+        let halves = &mut self.halves;
         each_record(chunk, &mut self.line, |row, col, value, line| {
             if u64::from(row.max(col)) > header.order {
                 return Err(Fault::line(line, format!("entry ({row}, {col}) lies outside the matrix"))
                     .expected(format!("indices up to {} as line {} declares", header.order, header.line)));
             }
-            if near.seen + far.seen == header.count {
+            if halves.seen() == header.count {
                 return Err(Fault::line(line, format!("one more entry than the {} declared", header.count))
                     .expected("the end of the file")
                     .cure(format!("correct the count on line {}", header.line)));
             }
             match header.symmetry {
-                Symmetry::General if row > col => far.push(row, col, value, line),
-                _ => near.push(row, col, value, line),
+                Symmetry::General => halves.push(row, col, value, line),
+                Symmetry::Symmetric => halves.upper.push(row, col, value, line),
             }
         })
     }
@@ -130,7 +123,7 @@ impl Reader {
         }
         // An entry takes 6 characters ("1 1 1\n"), so the file bounds what is worth reserving.
         let room = count.min(size / 6) as usize;
-        self.near.reserve(if symmetry == Symmetry::General { room / 2 } else { room });
+        self.halves.upper.reserve(if symmetry == Symmetry::General { room / 2 } else { room });
         self.header = Some(Header { symmetry, order: rows, count, line: at });
         Ok(())
     }
@@ -144,7 +137,7 @@ impl Reader {
                 .expected("rows, columns and entries")
                 .cure("it was probably cut short: copy or export it again"));
         };
-        let seen = self.near.seen + self.far.seen;
+        let seen = self.halves.seen();
         if seen < header.count {
             return Err(Fault::line(self.line, format!("the file ends after {seen} entries"))
                 .expected(format!("{} as line {} declares", header.count, header.line))
@@ -157,37 +150,24 @@ impl Reader {
         }
         let order = header.order as usize;
         match header.symmetry {
-            Symmetry::Symmetric => self.near.into_matrix(order),
-            Symmetry::General => self.symmetrised(order),
+            Symmetry::Symmetric => self.halves.upper.into_matrix(order),
+            Symmetry::General => self.halves.into_symmetrised(order),
         }
     }
+}
 
-    /// The mean of both triangles of a general matrix.
-    fn symmetrised(self, order: usize) -> Result<SymSparse, Fault> {
-        let upper = self.near.into_matrix(order)?;
-        let lower = self.far.into_matrix(order)?;
-        let largest = upper.values().iter().chain(lower.values()).fold(0.0f64, |m, v| m.max(v.abs()));
-        let mut mean = Vec::with_capacity(upper.stored());
-        for j in 0..order {
-            let (mut above, mut below) = (upper.column(j).peekable(), lower.column(j).peekable());
-            while let Some(i) = above.peek().map(|e| e.0).into_iter().chain(below.peek().map(|e| e.0)).min() {
-                let a = above.next_if(|e| e.0 == i).map_or(0.0, |e| e.1);
-                let b = if i == j { a } else { below.next_if(|e| e.0 == i).map_or(0.0, |e| e.1) };
-                let (row, col) = (i as u32 + 1, j as u32 + 1);
-                let allowed = (ENTRY_TOLERANCE * a.abs().max(b.abs())).max(MATRIX_TOLERANCE * largest);
-                if (a - b).abs() > allowed {
-                    let fault = Fault::new(format!(
-                        "the matrix is not symmetric: ({row}, {col}) is {a:e}, ({col}, {row}) is {b:e}"
-                    ));
-                    return Err(Fault { place: Place::Entry(row, col), ..fault }
-                        .expected("a symmetric stiffness or mass matrix")
-                        .cure("gyroscopic, follower-force and friction terms cannot be used: export without them"));
-                }
-                mean.push((i as u32, j as u32, if a == b { a } else { 0.5 * (a + b) }));
-            }
+/// The lower triangle as a MatrixMarket file; every number reads back to the same bits.
+pub fn symmetric_to_matrix_market(matrix: &SymSparse) -> String {
+    // A column of the stored upper triangle is a row of the lower one: rows ascending is as good an order.
+    let mut text =
+        format!("%%MatrixMarket matrix coordinate real symmetric\n{0} {0} {1}\n", matrix.order(), matrix.stored());
+    for j in 0..matrix.order() {
+        for (i, value) in matrix.column(j) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{} {} {value:e}", j + 1, i + 1);
         }
-        SymSparse::from_compact(order, &mean).map_err(|e| sparse_fault(&e))
     }
+    text
 }
 
 /// The first line: what the file says it holds.

@@ -78,6 +78,80 @@ pub(super) fn cut_line(number: usize, text: &[u8]) -> Fault {
         .cure("it was probably cut short: copy or export it again (add a line end if it is complete)")
 }
 
+/// A full matrix is taken as symmetric when its triangles agree to this share of the larger of the
+/// two entries (programs print 10 to 17 digits) …
+const ENTRY_TOLERANCE: f64 = 1e-9;
+/// … or to this share of the largest entry of the matrix (rounding of sums of large terms).
+const MATRIX_TOLERANCE: f64 = 1e-13;
+
+/// Collects a matrix of which one triangle is given, or both.
+#[derive(Default)]
+pub(super) struct Halves {
+    /// With the diagonal.
+    pub upper: Triangle,
+    /// Without it.
+    pub lower: Triangle,
+    /// The last entry seen, from 1.
+    pub last: (u32, u32),
+}
+
+impl Halves {
+    /// Adds an entry, indices from 1.
+    #[inline(always)]
+    pub fn push(&mut self, row: u32, col: u32, value: f64, line: usize) -> Result<(), Fault> {
+        self.last = (row, col);
+        if row > col { self.lower.push(row, col, value, line) } else { self.upper.push(row, col, value, line) }
+    }
+
+    /// Entries seen, zeros included.
+    pub fn seen(&self) -> u64 {
+        self.upper.seen + self.lower.seen
+    }
+
+    /// Largest index seen, from 1.
+    pub fn largest(&self) -> u32 {
+        self.upper.largest.max(self.lower.largest)
+    }
+
+    /// The matrix of a file that may give one triangle only: then that one counts.
+    pub fn into_matrix(mut self, order: usize) -> Result<SymSparse, Fault> {
+        if self.lower.seen == 0 || self.upper.seen == self.upper.diagonals as u64 {
+            self.upper.entries.append(&mut self.lower.entries);
+            return self.upper.into_matrix(order);
+        }
+        self.into_symmetrised(order)
+    }
+
+    /// The mean of both triangles of a full matrix, which must agree.
+    pub fn into_symmetrised(self, order: usize) -> Result<SymSparse, Fault> {
+        let upper = self.upper.into_matrix(order)?;
+        let lower = self.lower.into_matrix(order)?;
+        let largest = upper.values().iter().chain(lower.values()).fold(0.0f64, |m, v| m.max(v.abs()));
+        let mut mean = Vec::with_capacity(upper.stored());
+        for j in 0..order {
+            let (mut above, mut below) = (upper.column(j).peekable(), lower.column(j).peekable());
+            while let Some(i) = above.peek().map(|e| e.0).into_iter().chain(below.peek().map(|e| e.0)).min() {
+                let a = above.next_if(|e| e.0 == i).map_or(0.0, |e| e.1);
+                let b = if i == j { a } else { below.next_if(|e| e.0 == i).map_or(0.0, |e| e.1) };
+                let (row, col) = (i as u32 + 1, j as u32 + 1);
+                let allowed = (ENTRY_TOLERANCE * a.abs().max(b.abs())).max(MATRIX_TOLERANCE * largest);
+                if (a - b).abs() > allowed {
+                    return Err(Fault {
+                        place: Place::Entry(row, col),
+                        ..Fault::new(format!(
+                            "the matrix is not symmetric: ({row}, {col}) is {a:e}, ({col}, {row}) is {b:e}"
+                        ))
+                    }
+                    .expected("one triangle, or both with the same values")
+                    .cure("gyroscopic, follower-force and friction terms cannot be used: export without them"));
+                }
+                mean.push((i as u32, j as u32, if a == b { a } else { 0.5 * (a + b) }));
+            }
+        }
+        SymSparse::from_compact(order, &mean).map_err(|e| sparse_fault(&e))
+    }
+}
+
 /// Collects the entries of one triangle of a symmetric matrix; off-diagonal zeros are dropped.
 #[derive(Default)]
 pub(super) struct Triangle {
@@ -137,21 +211,12 @@ impl Triangle {
         Ok(())
     }
 
-    /// The last entry seen, from 1.
-    pub fn last(&self) -> (u32, u32) {
-        self.last
-    }
-
-    /// The smallest index from 1 without a diagonal entry.
-    pub fn missing_diagonal(&self) -> Option<u32> {
+    /// The smallest index from 1 to `largest` without a diagonal entry.
+    pub fn missing_diagonal(&self, largest: u32) -> Option<u32> {
         let mut found: Vec<u32> = self.entries.iter().filter(|e| e.0 == e.1).map(|e| e.0 + 1).collect();
-        if found.len() as u64 == u64::from(self.largest) && found.is_sorted() {
-            found.dedup();
-        } else {
-            found.sort_unstable();
-            found.dedup();
-        }
-        if found.len() as u64 == u64::from(self.largest) {
+        found.sort_unstable();
+        found.dedup();
+        if found.len() as u64 == u64::from(largest) {
             return None;
         }
         Some(found.iter().zip(1..).find(|&(&d, k)| d != k).map_or(found.len() as u32 + 1, |(_, k)| k))

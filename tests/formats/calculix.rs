@@ -64,6 +64,7 @@ fn plain_gzip_crlf_blank_lines_and_fortran_exponents_read_the_same() {
         GOOD.replace("e+00", "+000"),
         GOOD.replace(' ', "\t"),
         GOOD.replace("1 2 ", "2 1 ").replace("2 3 ", "3 2 "),
+        GOOD.replace("2 2 ", "2 1 -1.5000000000000e+00\n2 2 "),
     ];
     for text in variants {
         let (matrix, _) = read_symmetric(&folder.write("c.sti", &text), "k").unwrap_or_else(|e| panic!("{e}: {text}"));
@@ -87,7 +88,7 @@ fn every_bad_line_is_named() {
         ("1 1 2.0\n12 1.0\n", 2, &["`12 1.0`"]),
         ("1 1 2.0\n5000000000 2 1\n", 2, &["5000000000", "largest possible"]),
         ("1 1 2.0\n99999999999999999999 2 1\n", 2, &["9999"]),
-        ("1 1 2.0\n1 2 1.0\n2 2 1.0\n2 1 1.0\n", 4, &["both sides of the diagonal", "line 2"]),
+        ("1 1 2.0\n1 2 1.0\n2 2 1.0\n2 1 1.5\n", 4, &["not symmetric", "(1, 2) is 1e0, (2, 1) is 1.5e0"]),
         ("1 1 2.0\n1 2 1.0\n1 2 1.0\n2 2 1.0\n", 3, &["(1, 2) stands twice"]),
         ("1 1 2.0\n2 2 1.0\n1 1 2.0\n", 3, &["stands twice"]),
         ("1 1 2.0\n1 3 1.0\n3 3 1.0\n", 3, &["diagonal entry for row 2 of 3"]),

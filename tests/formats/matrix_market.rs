@@ -1,8 +1,9 @@
 //! MatrixMarket coordinate files.
 
 use super::{Folder, assert_says};
-use ferrom::format::read_symmetric;
+use ferrom::format::{read_symmetric, symmetric_to_matrix_market};
 use ferrom::linalg::SymSparse;
+use proptest::prelude::*;
 
 const BANNER: &str = "%%MatrixMarket matrix coordinate real symmetric\n";
 const GENERAL: &str = "%%MatrixMarket matrix coordinate real general\n";
@@ -82,5 +83,26 @@ fn a_file_cut_at_any_byte_is_refused() {
     let text = format!("{BANNER}% note\n3 3 4\n1 1 2.0\n2 1 -1.0\n2 2 3.0\n3 3 4.0\n");
     for cut in 0..text.len() {
         assert!(read_symmetric(&folder.write("cut.mtx", &text[..cut]), "k").is_err(), "cut at {cut}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn written_matrices_read_back_to_the_bit(order in 1usize..9, seed in proptest::collection::vec((0usize..9, 0usize..9, any::<f64>()), 0..40)) {
+        let mut entries = std::collections::BTreeMap::new();
+        for (i, j, value) in seed {
+            if value.is_finite() {
+                let (i, j) = (i % order, j % order);
+                entries.insert((i.min(j), i.max(j)), value);
+            }
+        }
+        let entries: Vec<_> = entries.into_iter().map(|((i, j), v)| (i, j, v)).collect();
+        let matrix = SymSparse::from_triplets(order, &entries).expect("valid");
+        let folder = Folder::new();
+        let (back, _) = read_symmetric(&folder.write("a.mtx", symmetric_to_matrix_market(&matrix)), "k").expect("readable");
+        prop_assert_eq!(back.col_starts(), matrix.col_starts());
+        prop_assert_eq!(back.rows(), matrix.rows());
+        let bits = |m: &SymSparse| m.values().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        prop_assert_eq!(bits(&back), bits(&matrix));
     }
 }
