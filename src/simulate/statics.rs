@@ -56,9 +56,10 @@ pub(super) fn equilibrium(system: &System, given: &[f64]) -> Result<Equilibrium,
 
 /// Solves where there is stiffness; refuses a load where there is none.
 fn supported(stiffness: &DMatrix<f64>, force: &DVector<f64>, n: usize) -> Result<DVector<f64>, String> {
-    // Scaling by the diagonal keeps soft directions apart from free ones.
-    let scale =
-        DVector::from_fn(n, |k, _| if stiffness[(k, k)] > 0.0 { stiffness[(k, k)].sqrt().recip() } else { 1.0 });
+    // Scaling by the diagonal keeps soft directions apart from free ones; a free one (a spinning
+    // wheel) has rounding there, which must not be scaled up to a stiffness.
+    let floor = (ROUNDING * stiffness.diagonal().amax()).max(f64::MIN_POSITIVE);
+    let scale = stiffness.diagonal().map(|d| d.max(floor).sqrt().recip());
     let scaled = DMatrix::from_fn(n, n, |r, c| stiffness[(r, c)] * scale[r] * scale[c]);
     let eigen = scaled.symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
