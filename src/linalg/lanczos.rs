@@ -11,11 +11,17 @@ use nalgebra::DMatrix;
 /// right-hand sides cost about as much to solve as two single ones.
 const P: usize = 8;
 
+/// Residual of the inverted problem that is enough to see an eigenvalue: its square is the error.
+const SEEN: f64 = 1e-3;
+
 /// What is asked of the iteration.
 #[derive(Clone, Copy, Debug)]
 pub struct LanczosOptions {
     /// Eigenvalues wanted, counted from the lowest above σ.
     pub wanted: usize,
+    /// Eigenvalues after those that need only be seen (to 10⁻³ of the inverted problem), so that
+    /// the gap above the wanted ones is known; they are returned when they have converged too.
+    pub seen: usize,
     /// Basis vectors held at most; rounded to whole blocks, and never less than `wanted` and four blocks.
     pub basis: usize,
     /// ‖residual‖ / θ at which a Ritz pair of the inverted problem counts as converged.
@@ -33,6 +39,8 @@ pub struct LanczosStatus<'a> {
     pub converged: usize,
     /// Ritz values λ, ascending; upper bounds in exact arithmetic. Empty between checks.
     pub lambda: &'a [f64],
+    /// Half width of an interval around each that holds an eigenvalue.
+    pub uncertainty: &'a [f64],
 }
 
 /// Eigenpairs of K φ = λ M φ next above σ.
@@ -92,11 +100,14 @@ pub fn lanczos(
         if exhausted || full || dims >= options.wanted || steps == 3 || steps == 5 {
             let ritz = projected.ritz(factor.shift(), &step);
             let good = ritz.converged(options.wanted, options.tolerance);
-            let go_on = watch(LanczosStatus { steps, converged: good, lambda: &ritz.lambda });
+            let seen = ritz.converged(options.wanted + options.seen, SEEN.max(options.tolerance));
+            let uncertainty: Vec<f64> = (0..ritz.lambda.len()).map(|k| ritz.uncertainty(k)).collect();
+            let go_on =
+                watch(LanczosStatus { steps, converged: good, lambda: &ritz.lambda, uncertainty: &uncertainty });
             if !go_on {
                 return None;
             }
-            if exhausted || good >= options.wanted {
+            if exhausted || (good >= options.wanted && seen >= (options.wanted + options.seen).min(ritz.lambda.len())) {
                 pairs = Some((ritz, true));
             } else if full && restarts == options.restarts {
                 pairs = Some((ritz, false));
@@ -109,7 +120,7 @@ pub fn lanczos(
                 basis.advance(step);
                 continue;
             }
-        } else if !watch(LanczosStatus { steps, converged: 0, lambda: &[] }) {
+        } else if !watch(LanczosStatus { steps, converged: 0, lambda: &[], uncertainty: &[] }) {
             return None;
         }
         if let Some((ritz, converged)) = pairs {
@@ -143,7 +154,8 @@ fn finish(
     tally: Tally,
     mass: &RowSparse,
 ) -> EigenPairs {
-    let count = options.wanted.min(ritz.lambda.len());
+    let seen = ritz.converged(options.wanted + options.seen, options.tolerance);
+    let count = options.wanted.max(seen).min(ritz.lambda.len());
     let vectors = basis.vectors_of(ritz, count, step);
     EigenPairs {
         lambda: ritz.lambda[..count].to_vec(),

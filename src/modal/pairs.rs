@@ -18,11 +18,18 @@ const DENSE_MOST: usize = 1500;
 const TOLERANCE: f64 = 1e-10;
 /// The shift is kept while its ratio to the first elastic ω² lies between these: a smaller one
 /// loses digits to the rigid modes, a larger one costs steps and digits of the lowest modes.
-const RATIO: (f64, f64) = (1e-2, 1e3);
+const RATIO: (f64, f64) = (1e-1, 1e3);
 
 /// Moves of the shift at most. From far off, early Ritz values are poor bounds and each move gains
 /// a few powers of ten; from a mesh none is needed.
 const MOVES: usize = 6;
+
+/// Share of |σ| below which λ is not distinguished from a rigid mode's zero.
+const VISIBLE: f64 = 1e-5;
+
+/// Basis vectors allowed per pair wanted: enough that a restart, which costs digits, is rare. They
+/// are only held when they are needed.
+const ROOM: usize = 6;
 
 /// Pairs with everything the later stages need.
 pub(super) struct Pairs {
@@ -42,6 +49,8 @@ pub(super) struct Start {
     pub(super) shift: f64,
     /// Pairs wanted.
     pub(super) wanted: usize,
+    /// Pairs after them that need only be seen.
+    pub(super) seen: usize,
     /// |ω²| up to which an eigenvalue is a rigid one in the given digits.
     pub(super) rigid_below: f64,
 }
@@ -81,7 +90,7 @@ pub(super) fn compute(
             let (lambda, vectors) = dense_pencil(k, m, shift).map_err(|e| named(e, &fe.dofs))?;
             match better_shift(&lambda, shift, start.rigid_below).filter(|_| attempt < MOVES) {
                 Some(better) => Err(better),
-                None => Ok(whole(lambda, vectors, start.wanted)),
+                None => Ok(whole(lambda, vectors, start.wanted + start.seen)),
             }
         } else {
             // Early Ritz values are only bounds; the converged ones tell whether the shift was right.
@@ -128,10 +137,15 @@ fn note_of(pairs: &EigenPairs, dense: bool) -> String {
 
 /// −(first elastic ω²) when the shift is out of range.
 fn better_shift(lambda: &[f64], shift: f64, rigid_below: f64) -> Option<f64> {
-    // λ = σ + 1/θ carries the rounding of σ: what is below that may be a rigid mode.
-    let elastic = lambda.iter().copied().find(|&l| l > rigid_below && l > 1e-12 * shift.abs())?;
-    let ratio = shift.abs() / elastic;
-    (ratio < RATIO.0 || ratio > RATIO.1).then_some(-elastic)
+    // λ = σ + 1/θ carries rounding of σ and of the solves: what is below that may be a rigid mode.
+    match lambda.iter().copied().find(|&l| l > rigid_below && l > VISIBLE * shift.abs()) {
+        Some(elastic) => {
+            let ratio = shift.abs() / elastic;
+            (ratio < RATIO.0 || ratio > RATIO.1).then_some(-elastic)
+        }
+        // Everything seen is nothing beside σ: go down as far as can be seen.
+        None => lambda.last().filter(|_| shift.abs() > rigid_below).map(|_| 1e-2 * shift),
+    }
 }
 
 fn whole(lambda: Vec<f64>, vectors: DMatrix<f64>, wanted: usize) -> EigenPairs {
@@ -160,15 +174,16 @@ fn iterate(
 ) -> Result<EigenPairs, f64> {
     let options = LanczosOptions {
         wanted: start.wanted,
-        basis: 2 * start.wanted + start.wanted / 2 + 32,
+        seen: start.seen,
+        basis: ROOM * start.wanted + 64,
         tolerance: TOLERANCE,
         restarts: 100,
     };
     let mut better = None;
     let pairs = lanczos(factor, mass, options, &mut |status| {
         progress.report("lanczos", status.converged, start.wanted);
-        // Ritz values bound λ from above, so a shift that looks too small may still be good early on.
-        if may_move && (status.steps == 3 || status.steps == 5) {
+        // By the fifth step rigid Ritz values have fallen below what counts as visible.
+        if may_move && status.steps == 5 {
             better = better_shift(status.lambda, shift, start.rigid_below);
         }
         better.is_none()

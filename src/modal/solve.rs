@@ -3,7 +3,7 @@
 use super::digits::{digits, noise, rounding};
 use super::pairs::{Pairs, Start, compute};
 use super::rigid::{FREE, RigidMotions, rigid_motions};
-use super::trust::{CLUSTER, complete, orthonormalise, refine};
+use super::trust::{CLUSTER, complete, orthonormalise, products, refine};
 use super::{ModalError, SolveReport, shift};
 use crate::model::{Axis, FeModel, Modes, Origin, Progress};
 use nalgebra::DMatrix;
@@ -15,6 +15,10 @@ const EXTRA: usize = 2;
 /// Energy of a free motion at most, in first elastic ω²: node positions of six digits leave 1e-6
 /// and less, a real support is seldom a thousand times softer than the body.
 const NOTHING: f64 = 1e-3;
+
+/// Share of the first elastic ω² that hundredfold rounding noise may reach before it is told: a
+/// standard deviation of one per cent.
+const NOISY: f64 = 1.0;
 
 /// What is asked of a modal analysis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +79,8 @@ pub fn solve_with_report(
     report.add("rigid motions", since, 0, format!("{free} free, first elastic ω² about {guess:.3e}"));
     let start = Start {
         shift: options.shift.unwrap_or(-guess),
-        wanted: options.count.saturating_add(EXTRA).min(n),
+        wanted: options.count.min(n),
+        seen: EXTRA.min(n - options.count.min(n)),
         rigid_below,
     };
     let mut pairs = compute(fe, &start, progress, &mut report)?;
@@ -83,15 +88,13 @@ pub fn solve_with_report(
         return Err(ModalError::NoMass);
     }
     let mut warnings = std::mem::take(&mut pairs.warnings);
+    let rigid_below = noise_of_lowest(fe, &pairs, relative);
     let rigid = rigid_count(&pairs.lambda, rigid_below);
     negative(&pairs, rigid, rigid_below)?;
 
     let since = Instant::now();
     progress.report("refinement", 0, 0);
-    let mut refined = refine(fe, &mut pairs, rigid);
-    if refined > 0 {
-        refined = refined.max(refine(fe, &mut pairs, rigid));
-    }
+    let refined = refine(fe, &mut pairs, rigid);
     report.add("refinement", since, 0, format!("{refined} modes refined"));
 
     let since = Instant::now();
@@ -106,6 +109,14 @@ pub fn solve_with_report(
     // With the elastic ω² known, a motion is free when its energy is nothing beside them, even if
     // rounded node positions put it above the noise of the entries.
     let first = pairs.lambda.get(rigid).copied().unwrap_or(f64::INFINITY);
+    if first.is_finite() && rigid_below > first.abs() * NOISY {
+        warnings.push(format!(
+            "the stiffness entries carry {} digits: their rounding may move ω² by about {:.1e} (rad/s)², and the lowest found is {:.1e}; frequencies of that size are not to be trusted",
+            report.digits,
+            rigid_below / FREE,
+            first
+        ));
+    }
     let geometric = motions.filter(|r| {
         let free = (0..r.energy.len()).filter(|&c| is_free(r, c) || r.energy[c].abs() <= NOTHING * first).count();
         if free != rigid {
@@ -157,6 +168,20 @@ fn check(fe: &FeModel, options: &ModalOptions) -> Result<(), ModalError> {
 
 fn is_free(r: &RigidMotions, c: usize) -> bool {
     r.energy[c].abs() <= FREE * r.noise[c]
+}
+
+/// What rounding of the entries of K may make of the ω² of the lowest shapes, with the margin
+/// `FREE`: the largest over the shapes whose ω² is not far above it.
+fn noise_of_lowest(fe: &FeModel, pairs: &Pairs, relative: f64) -> f64 {
+    let mut below = 0.0f64;
+    for (c, lambda) in pairs.lambda.iter().enumerate() {
+        let own = FREE * noise(&fe.stiffness, pairs.vectors.column(c).as_slice(), relative);
+        if lambda.abs() > 1e3 * own.max(below) {
+            break;
+        }
+        below = below.max(own);
+    }
+    below
 }
 
 /// Leading eigenvalues that are zero in the digits given: within the noise, and a tenth of the
@@ -241,8 +266,7 @@ fn finish(fe: &FeModel, pairs: Pairs, parts: Parts) -> Modes {
         projection = Some((exact, heavy));
     }
     let orthogonality = orthonormalise(m, &mut shapes);
-    let stiff = k.mul_block_compensated(&shapes);
-    let heavy = m.mul_block(&shapes);
+    let (stiff, heavy) = products(k, m, &shapes);
     let mut omega = vec![0.0; count];
     let mut residual = vec![0.0; count];
     let first = (rigid < count).then(|| shapes.column(rigid).dot(&stiff.column(rigid)));

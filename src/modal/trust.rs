@@ -7,39 +7,74 @@ use nalgebra::DMatrix;
 
 /// Residual above which a mode gets a step of refinement.
 const REFINE_ABOVE: f64 = 1e-9;
+/// Stored entries of K up to which every product is made in twice the precision: it costs nothing.
+const SMALL: usize = 2_000_000;
 /// Two ω² closer than this, relative, are one cluster: no shift between them could be trusted.
 pub(super) const CLUSTER: f64 = 1e-6;
+/// Distance of μ above the last ω², relative: near enough that an estimate of the next one, which
+/// may be too high, does not let it slip below; far enough for rounding.
+const NEAR: f64 = 1e-4;
 /// Largest |entry of L| with which an inertia count is believed: rounding is multiplied by its
 /// square at worst, and μ stands further from every ω² than 10⁻⁷ of it.
 const GROWTH: f64 = 1e6;
 
-/// One step of inverse iteration with the residual in twice the working precision,
-/// φ ← φ − (K − σM)⁻¹(Kφ − λMφ), for the modes that need it; λ by Rayleigh quotients.
-pub(super) fn refine(fe: &FeModel, pairs: &mut Pairs, first: usize) -> usize {
-    let (k, m) = (&fe.stiffness, &fe.mass);
-    let elastic = pairs.lambda.len() - first;
-    let vectors = pairs.vectors.columns(first, elastic).into_owned();
-    let stiff = k.mul_block_compensated(&vectors);
-    let heavy = m.mul_block(&vectors);
-    let mut chosen = Vec::new();
-    for c in 0..elastic {
-        let lambda = vectors.column(c).dot(&stiff.column(c)) / vectors.column(c).dot(&heavy.column(c));
-        pairs.lambda[first + c] = lambda;
-        let residual = stiff.column(c) - heavy.column(c) * lambda;
-        if residual.norm() > REFINE_ABOVE * stiff.column(c).norm() {
-            chosen.push((c, residual));
+/// Kφ and Mφ of some vectors. Kφ is summed in twice the working precision where plain summation
+/// would show in the residual (above a tenth of what is asked), or everywhere on small models.
+pub(super) fn products(k: &SymSparse, m: &SymSparse, vectors: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+    let heavy = m.mul_block(vectors);
+    if k.stored() < SMALL {
+        return (k.mul_block_compensated(vectors), heavy);
+    }
+    let mut stiff = k.mul_block(vectors);
+    let chosen: Vec<usize> = (0..vectors.ncols())
+        .filter(|&c| {
+            let lambda = vectors.column(c).dot(&stiff.column(c)) / vectors.column(c).dot(&heavy.column(c));
+            (stiff.column(c) - heavy.column(c) * lambda).norm() > 0.1 * REFINE_ABOVE * stiff.column(c).norm()
+        })
+        .collect();
+    if !chosen.is_empty() {
+        let exact = k.mul_block_compensated(&vectors.select_columns(&chosen));
+        for (at, &c) in chosen.iter().enumerate() {
+            stiff.set_column(c, &exact.column(at));
         }
     }
-    if chosen.is_empty() {
-        return 0;
+    (stiff, heavy)
+}
+
+/// Two steps of inverse iteration with the residual in twice the working precision,
+/// φ ← φ − (K − σM)⁻¹(Kφ − λMφ), for the modes that need it; λ by Rayleigh quotients. Returns how
+/// many modes were refined.
+pub(super) fn refine(fe: &FeModel, pairs: &mut Pairs, first: usize) -> usize {
+    let (k, m) = (&fe.stiffness, &fe.mass);
+    let mut columns: Vec<usize> = (first..pairs.lambda.len()).collect();
+    let mut refined = 0;
+    for round in 0..3 {
+        let vectors = pairs.vectors.select_columns(&columns);
+        let (stiff, heavy) = products(k, m, &vectors);
+        let mut chosen = Vec::new();
+        for (at, &c) in columns.iter().enumerate() {
+            let lambda = vectors.column(at).dot(&stiff.column(at)) / vectors.column(at).dot(&heavy.column(at));
+            pairs.lambda[c] = lambda;
+            let residual = stiff.column(at) - heavy.column(at) * lambda;
+            if residual.norm() > REFINE_ABOVE * stiff.column(at).norm() {
+                chosen.push((c, residual));
+            }
+        }
+        if round == 0 {
+            refined = chosen.len();
+        }
+        if chosen.is_empty() || round == 2 {
+            break;
+        }
+        let mut correction = DMatrix::from_columns(&chosen.iter().map(|c| c.1.clone()).collect::<Vec<_>>());
+        pairs.factor.solve_in_place(&mut correction);
+        for (at, (c, _)) in chosen.iter().enumerate() {
+            let mut column = pairs.vectors.column_mut(*c);
+            column -= correction.column(at);
+        }
+        columns = chosen.into_iter().map(|c| c.0).collect();
     }
-    let mut correction = DMatrix::from_columns(&chosen.iter().map(|c| c.1.clone()).collect::<Vec<_>>());
-    pairs.factor.solve_in_place(&mut correction);
-    for (at, (c, _)) in chosen.iter().enumerate() {
-        let mut column = pairs.vectors.column_mut(first + c);
-        column -= correction.column(at);
-    }
-    chosen.len()
+    refined
 }
 
 /// Makes the columns M-orthonormal one after the other, Φ ← Φ R⁻¹ with ΦᵀMΦ = RᵀR: a low mode
@@ -73,7 +108,9 @@ pub(super) fn complete(fe: &FeModel, pairs: &Pairs, count: usize) -> (Completene
     let next = pairs.lambda.get(count).copied().or(pairs.next);
     let mut warnings = Vec::new();
     let above = match next {
-        Some(next) if next - last > CLUSTER * next.abs() => 0.5 * (last + next),
+        Some(next) if next - last > CLUSTER * next.abs() => {
+            last + (0.5 * (next - last)).min(NEAR * last.max(pairs.shift.abs()))
+        }
         Some(_) => {
             warnings.push(format!(
                 "mode {} and the next lie within {CLUSTER:e} of each other; the set may split a cluster, and its completeness cannot be proved",
