@@ -188,10 +188,12 @@ fn noise_of_lowest(fe: &FeModel, pairs: &Pairs, relative: f64) -> f64 {
 /// next one at most; where several places would do, the widest gap decides.
 fn rigid_count(lambda: &[f64], below: f64) -> usize {
     let mut best = (0, 10.0);
-    let mut largest = 0.0f64;
+    // An eigenvalue that happens to be 0 to the bit is no wider gap than rounding beside the others.
+    let rounding = 1e-14 * lambda.last().map_or(0.0, |l| l.abs());
+    let mut largest = rounding.max(1e-3 * below).max(f64::MIN_POSITIVE);
     for (s, pair) in lambda.windows(2).enumerate() {
         largest = largest.max(pair[0].abs());
-        let ratio = pair[1] / largest.max(f64::MIN_POSITIVE);
+        let ratio = pair[1] / largest;
         if largest <= below.max(1e-9 * pair[1]) && ratio > best.1 {
             best = (s + 1, ratio);
         }
