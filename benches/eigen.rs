@@ -2,8 +2,8 @@
 //!
 //! `cargo bench --bench eigen -- K.mtx[.gz] M.mtx[.gz] [modes] [threads]` prints one JSON object:
 //! wall and CPU seconds of the analysis (reading is not counted), peak memory of the process,
-//! largest elastic residual, orthogonality, completeness, and the stages. Without files it solves
-//! a generated strip of 3-dof nodes, so that `cargo bench` runs anywhere.
+//! largest elastic residual, orthogonality, completeness, and the stages. `NXxNYxNZ -` instead of
+//! files solves a generated lattice strip of 3-dof nodes; without arguments a small one.
 
 use ferrom::linalg::SymSparse;
 use ferrom::modal::{ModalOptions, solve_with_report};
@@ -19,6 +19,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     let number = |at: usize, default: usize| arguments.get(at).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (stiffness, mass) = match arguments.as_slice() {
+        [size, ..] if size.contains('x') && !size.contains('.') => {
+            let n: Vec<usize> = size.split('x').map(str::parse).collect::<Result<_, _>>()?;
+            strip(n[0], *n.get(1).unwrap_or(&6), *n.get(2).unwrap_or(&4))?
+        }
         [k, m, ..] => (read(k)?, read(m)?),
         _ => strip(120, 6, 4)?,
     };

@@ -104,10 +104,12 @@ impl<'a, const P: usize> Basis<'a, P> {
                 let part = h.iter().map(|h| (0..P).map(|r| h[r][q] * h[r][q]).sum::<f64>()).sum::<f64>().sqrt();
                 if length > 0.0 { worst.max(part / length) } else { worst }
             });
+            // M W must follow W even for the smallest change: the next solve magnifies what is left of
+            // the lowest modes by the ratio of the largest θ to the present ones.
+            self.mass.mul(w, mw);
             if worst <= SECOND_SWEEP {
                 return;
             }
-            self.mass.mul(w, mw);
         }
     }
 

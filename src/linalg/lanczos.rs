@@ -99,7 +99,8 @@ pub fn lanczos(
         let mut pairs = None;
         if exhausted || full || dims >= options.wanted || steps == 3 || steps == 5 {
             let ritz = projected.ritz(factor.shift(), &step);
-            let good = ritz.converged(options.wanted, options.tolerance);
+            let wanted = ritz.whole(options.wanted, options.seen);
+            let good = ritz.converged(wanted, options.tolerance);
             let seen = ritz.converged(options.wanted + options.seen, SEEN.max(options.tolerance));
             let uncertainty: Vec<f64> = (0..ritz.lambda.len()).map(|k| ritz.uncertainty(k)).collect();
             let go_on =
@@ -107,7 +108,7 @@ pub fn lanczos(
             if !go_on {
                 return None;
             }
-            if exhausted || (good >= options.wanted && seen >= (options.wanted + options.seen).min(ritz.lambda.len())) {
+            if exhausted || (good >= wanted && seen >= (options.wanted + options.seen).min(ritz.lambda.len())) {
                 pairs = Some((ritz, true));
             } else if full && restarts == options.restarts {
                 pairs = Some((ritz, false));

@@ -127,7 +127,19 @@ impl Projected {
     }
 }
 
+/// Ritz values closer than this, relative, are taken for one cluster.
+const CLUSTER: f64 = 1e-6;
+
 impl Ritz {
+    /// `wanted`, and up to `more` pairs after it that belong to the same cluster.
+    pub(super) fn whole(&self, wanted: usize, more: usize) -> usize {
+        let close = |k: usize| match (self.lambda.get(k - 1), self.lambda.get(k)) {
+            (Some(a), Some(b)) => b - a <= CLUSTER * b.abs(),
+            _ => false,
+        };
+        (wanted..wanted + more).take_while(|&k| k > 0 && close(k)).last().map_or(wanted, |k| k + 1)
+    }
+
     /// How many of the first `wanted` pairs are below the tolerance, counted from the lowest.
     pub(super) fn converged(&self, wanted: usize, tolerance: f64) -> usize {
         self.estimate.iter().take(wanted).take_while(|&&e| e <= tolerance).count()

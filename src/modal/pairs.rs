@@ -14,7 +14,7 @@ const DENSE: usize = 300;
 /// Pairs to which all of them are solved whole when most are wanted.
 const DENSE_MOST: usize = 1500;
 /// Residual of the inverted problem asked of the iteration: a tenth of the 1e-9 promised for
-/// ‖Kφ − ω²Mφ‖ / ‖Kφ‖.
+/// ‖Kφ − ω²Mφ‖ / ‖Kφ‖, which is measured in another norm.
 const TOLERANCE: f64 = 1e-10;
 /// The shift is kept while its ratio to the first elastic ω² lies between these: a smaller one
 /// loses digits to the rigid modes, a larger one costs steps and digits of the lowest modes.
@@ -39,7 +39,8 @@ pub(super) struct Pairs {
     pub(super) next: Option<f64>,
     pub(super) shift: f64,
     pub(super) analysis: Arc<Analysis>,
-    pub(super) factor: ShiftedFactor,
+    /// Given up before the completeness count, which needs the memory.
+    pub(super) factor: Option<ShiftedFactor>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -118,7 +119,7 @@ pub(super) fn compute(
                     next: pairs.next.map(|n| n.0),
                     shift,
                     analysis,
-                    factor,
+                    factor: Some(factor),
                     warnings,
                 });
             }

@@ -99,6 +99,7 @@ pub fn solve_with_report(
 
     let since = Instant::now();
     progress.report("completeness", 0, 0);
+    pairs.factor = None;
     let count = whole_clusters(&pairs, options.count, rigid, &mut warnings);
     let (proof, notes) = complete(fe, &pairs, count);
     warnings.extend(notes);

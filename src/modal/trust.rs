@@ -41,6 +41,26 @@ pub(super) fn products(k: &SymSparse, m: &SymSparse, vectors: &DMatrix<f64>) -> 
     (stiff, heavy)
 }
 
+/// Turns the elastic vectors so that ΦᵀKΦ is diagonal (Rayleigh–Ritz): the projected operator of
+/// the iteration carries the rounding of its largest θ, which mixes close modes of small θ.
+fn separate(k: &SymSparse, m: &SymSparse, pairs: &mut Pairs, first: usize) {
+    let count = pairs.lambda.len() - first;
+    if count < 2 {
+        return;
+    }
+    let vectors = pairs.vectors.columns(first, count).into_owned();
+    let stiff = vectors.transpose() * k.mul_block(&vectors);
+    let Some(gram) = (vectors.transpose() * m.mul_block(&vectors)).cholesky() else { return };
+    let Some(inner) = gram.l().solve_lower_triangular(&stiff) else { return };
+    let Some(inner) = gram.l().solve_lower_triangular(&inner.transpose()) else { return };
+    let eigen = ((&inner + inner.transpose()) * 0.5).symmetric_eigen();
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    let turn = eigen.eigenvectors.select_columns(&order);
+    let Some(turn) = gram.l().transpose().solve_upper_triangular(&turn) else { return };
+    pairs.vectors.columns_mut(first, count).copy_from(&(vectors * turn));
+}
+
 /// Two steps of inverse iteration with the residual in twice the working precision,
 /// φ ← φ − (K − σM)⁻¹(Kφ − λMφ), for the modes that need it; λ by Rayleigh quotients. Returns how
 /// many modes were refined.
@@ -48,6 +68,7 @@ pub(super) fn refine(fe: &FeModel, pairs: &mut Pairs, first: usize) -> usize {
     let (k, m) = (&fe.stiffness, &fe.mass);
     let mut columns: Vec<usize> = (first..pairs.lambda.len()).collect();
     let mut refined = 0;
+    separate(k, m, pairs, first);
     for round in 0..3 {
         let vectors = pairs.vectors.select_columns(&columns);
         let (stiff, heavy) = products(k, m, &vectors);
@@ -63,11 +84,9 @@ pub(super) fn refine(fe: &FeModel, pairs: &mut Pairs, first: usize) -> usize {
         if round == 0 {
             refined = chosen.len();
         }
-        if chosen.is_empty() || round == 2 {
-            break;
-        }
+        let Some(factor) = pairs.factor.as_ref().filter(|_| !chosen.is_empty() && round < 2) else { break };
         let mut correction = DMatrix::from_columns(&chosen.iter().map(|c| c.1.clone()).collect::<Vec<_>>());
-        pairs.factor.solve_in_place(&mut correction);
+        factor.solve_in_place(&mut correction);
         for (at, (c, _)) in chosen.iter().enumerate() {
             let mut column = pairs.vectors.column_mut(*c);
             column -= correction.column(at);
