@@ -1,7 +1,7 @@
 //! `ferrom inspect`: what an export holds and what looks suspicious.
 
+use super::matrices::Matrices;
 use super::output::Outcome;
-use crate::format::{FeFiles, FileUnits};
 use crate::format::{Holds, detect, read_dof_map, read_fe_model, read_mesh, read_reduced, read_symmetric};
 use crate::modal::survey;
 use crate::model::{FeModel, Progress};
@@ -20,32 +20,13 @@ pub(super) struct Arguments {
     /// Files, or one model folder
     #[arg(required_unless_present = "stiffness")]
     files: Vec<PathBuf>,
-    /// Stiffness matrix, to be looked at together with the mass
-    #[arg(long, requires = "mass", value_name = "FILE")]
-    stiffness: Option<PathBuf>,
-    /// Mass matrix
-    #[arg(long, requires = "stiffness", value_name = "FILE")]
-    mass: Option<PathBuf>,
-    /// Dof list
-    #[arg(long, requires = "stiffness", value_name = "FILE")]
-    dofs: Option<PathBuf>,
-    /// Mesh
-    #[arg(long, requires = "dofs", value_name = "FILE")]
-    mesh: Option<PathBuf>,
+    #[command(flatten)]
+    matrices: Matrices,
 }
 
 pub(super) fn run(arguments: &Arguments, progress: &dyn Progress) -> Result<Outcome, PipelineError> {
-    if let (Some(stiffness), Some(mass)) = (&arguments.stiffness, &arguments.mass) {
-        let files = FeFiles {
-            name: "export".into(),
-            stiffness: stiffness.clone(),
-            mass: mass.clone(),
-            dofs: arguments.dofs.clone(),
-            mesh: arguments.mesh.clone(),
-            units: FileUnits::default(),
-        };
-        let fe = read_fe_model(&files, progress)?;
-        return Ok(model(&fe, stiffness));
+    if let Some(files) = arguments.matrices.files() {
+        return Ok(model(&read_fe_model(&files, progress)?, &files.stiffness));
     }
     if let [one] = arguments.files.as_slice() {
         if one.is_dir() || one.file_name().is_some_and(|n| n == "model.toml") {
@@ -110,7 +91,12 @@ fn model(fe: &FeModel, stiffness: &Path) -> Outcome {
         map.insert("centre_m".into(), json!(body.centre));
         map.insert("inertia_kg_m2".into(), json!(inertia));
         map.insert("rigid_body_residual".into(), json!(facts.rigid_residual));
-        let list = |v: &[f64], digits| v.iter().map(|x| significant(*x, digits)).collect::<Vec<_>>().join(", ");
+        // Components that are rounding beside the largest read as 0.
+        let list = |v: &[f64], digits| {
+            let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let plain = |x: f64| if x.abs() < 1e-12 * largest { 0.0 } else { x };
+            v.iter().map(|x| significant(plain(*x), digits)).collect::<Vec<_>>().join(", ")
+        };
         pairs.push(("mass", format!("{} kg", significant(body.mass, 7))));
         pairs.push(("centre of mass", format!("{} m", list(&body.centre, 5))));
         pairs.push(("inertia xx yy zz xy xz yz", format!("{} kg m²", list(&inertia, 5))));

@@ -3,6 +3,7 @@
 mod check;
 mod inspect;
 mod list;
+mod matrices;
 mod modes;
 mod output;
 mod progress;

@@ -1,8 +1,9 @@
 //! `ferrom modes`: modal analysis of a model or of bare matrices.
 
+use super::matrices::Matrices;
 use super::output::Outcome;
-use crate::format::{FeFiles, FileUnits, read_fe_model};
-use crate::modal::{ModalOptions, solve};
+use crate::format::read_fe_model;
+use crate::modal::{ModalOptions, SolveReport, solve_with_report};
 use crate::model::{Modes, Progress, RigidBody};
 use crate::pipeline::{PipelineError, analyse, model_file};
 use crate::report::modes_table;
@@ -21,18 +22,8 @@ pub(super) struct Arguments {
     /// How many modes, rigid ones included
     #[arg(short = 'n', long = "count", value_name = "N")]
     count: Option<usize>,
-    /// Stiffness matrix (instead of a model)
-    #[arg(long, requires = "mass", value_name = "FILE")]
-    stiffness: Option<PathBuf>,
-    /// Mass matrix
-    #[arg(long, requires = "stiffness", value_name = "FILE")]
-    mass: Option<PathBuf>,
-    /// Dof list of the matrices
-    #[arg(long, requires = "stiffness", value_name = "FILE")]
-    dofs: Option<PathBuf>,
-    /// Mesh with node positions
-    #[arg(long, requires = "dofs", value_name = "FILE")]
-    mesh: Option<PathBuf>,
+    #[command(flatten)]
+    matrices: Matrices,
     /// Shift of the eigen-solution, (rad/s)², negative (default: found automatically)
     #[arg(long, value_name = "SIGMA", allow_hyphen_values = true)]
     shift: Option<f64>,
@@ -64,38 +55,30 @@ pub(super) fn modes_json(modes: &Modes) -> Value {
     })
 }
 
-/// "complete: …" in words.
-pub(super) fn completeness_words(modes: &Modes) -> String {
-    let c = &modes.complete;
-    if c.proved {
-        format!("No mode below {:.6} rad/s is missing: inertia counts {} (Sturm).", c.below, c.count)
-    } else {
-        format!("Not proved that no mode below {:.6} rad/s is missing.", c.below)
-    }
+/// "Time: ordering 0.02 s, …".
+fn stages_words(report: &SolveReport) -> String {
+    let stages: Vec<String> = report.stages.iter().map(|s| format!("{} {:.2} s", s.name, s.wall_s)).collect();
+    format!("Time: {}.", stages.join(", "))
 }
 
 pub(super) fn run(arguments: &Arguments, progress: &dyn Progress) -> Result<Outcome, PipelineError> {
-    let (modes, mass) = match (&arguments.model, &arguments.stiffness, &arguments.mass) {
-        (Some(model), _, _) => {
+    let (modes, report, mass) = match (&arguments.model, arguments.matrices.files()) {
+        (Some(model), _) => {
             let analysed = analyse(&model_file(model)?, arguments.count, progress)?;
-            (analysed.modes, RigidBody::of(&analysed.fe).map(|b| b.mass))
+            (analysed.modes, analysed.solve_report, RigidBody::of(&analysed.fe).map(|b| b.mass))
         }
-        (None, Some(stiffness), Some(mass)) => {
-            let files = FeFiles {
-                name: "matrices".into(),
-                stiffness: stiffness.clone(),
-                mass: mass.clone(),
-                dofs: arguments.dofs.clone(),
-                mesh: arguments.mesh.clone(),
-                units: FileUnits::default(),
-            };
+        (None, Some(files)) => {
             let fe = read_fe_model(&files, progress)?;
             let options = ModalOptions { count: arguments.count.unwrap_or(50), shift: arguments.shift };
-            (solve(&fe, &options, progress)?, RigidBody::of(&fe).map(|b| b.mass))
+            let (modes, report) = solve_with_report(&fe, &options, progress)?;
+            (modes, report, RigidBody::of(&fe).map(|b| b.mass))
         }
-        _ => return Err(PipelineError::Request("name a model, or --stiffness and --mass".into())),
+        (None, None) => return Err(PipelineError::Request("name a model, or --stiffness and --mass".into())),
     };
     let table = modes_table(&modes, &[], mass);
-    let text = format!("{}\n{}\n", table.text(), completeness_words(&modes));
-    Ok(Outcome::new(modes_json(&modes), text).warn(modes.warnings.iter().cloned()))
+    let text = format!("{}\n{}\n", table.text(), stages_words(&report));
+    let mut json = modes_json(&modes);
+    json["stages"] = json!(report.stages);
+    json["digits"] = json!(report.digits);
+    Ok(Outcome::new(json, text).warn(modes.warnings.iter().cloned()))
 }

@@ -2,7 +2,7 @@
 
 use super::CHECK_FAILED;
 use super::check::{check_json, check_text};
-use super::modes::{completeness_words, modes_json};
+use super::modes::modes_json;
 use super::output::Outcome;
 use super::rank::{picture_of, ranking_json};
 use super::reduce::selection_text;
@@ -218,9 +218,8 @@ fn comparisons(loaded: &Loaded, trajectory: &Trajectory) -> Vec<Table> {
 fn model_tables(built: &Built) -> Vec<Table> {
     let modes = &built.analysed.modes;
     let mass = RigidBody::of(&built.analysed.fe).map(|b| b.mass);
-    let mut table = modes_table(modes, &built.selection.modes, mass);
-    table.notes.push(completeness_words(modes));
-    let mut tables = vec![table, ranking_table(&built.ranking, &built.selection)];
+    let mut tables =
+        vec![modes_table(modes, &built.selection.modes, mass), ranking_table(&built.ranking, &built.selection)];
     for reference in &built.analysed.recipe.reference {
         let rows: Vec<Compared> = reference
             .omega

@@ -5,7 +5,7 @@ use super::{PipelineError, output_file, summary_file};
 use crate::format::{
     nearest, parse_toml, read_fe_model, reduced_to_bytes, summary_to_text, toml_error_at, write_atomically,
 };
-use crate::modal::{DAMPING_PRESETS, DampingModel, ModalOptions, set_damping, solve};
+use crate::modal::{DAMPING_PRESETS, DampingModel, ModalOptions, SolveReport, set_damping, solve_with_report};
 use crate::model::{
     Axis, FeModel, InterfaceNode, ModeNo, Modes, NodeId, Progress, Ranking, ReducedModel, Role, Selection, StateSpace,
 };
@@ -40,6 +40,8 @@ pub struct Analysed {
     pub modes: Modes,
     /// Joints and measured nodes.
     pub nodes: Vec<InterfaceNode>,
+    /// Time and memory of the eigen-solution by stage.
+    pub solve_report: SolveReport,
     /// Seconds per stage.
     pub timings: Vec<Timing>,
 }
@@ -105,7 +107,8 @@ pub fn analyse(file: &Path, count: Option<usize>, progress: &dyn Progress) -> Re
     let nodes = interface_nodes(&recipe, &fe).map_err(|(span, message)| fail(span, message))?;
     timings.push(Timing { stage: "read", wall_s: clock.elapsed().as_secs_f64() });
     let clock = Instant::now();
-    let mut modes = solve(&fe, &ModalOptions { count: asked, shift: recipe.modal.shift }, progress)?;
+    let options = ModalOptions { count: asked, shift: recipe.modal.shift };
+    let (mut modes, solve_report) = solve_with_report(&fe, &options, progress)?;
     set_damping(&mut modes, damping);
     for (number, zeta) in recipe.damping.get_ref().modes.iter().flatten() {
         match modes.zeta.get_mut((*number as usize).wrapping_sub(1)) {
@@ -117,7 +120,7 @@ pub fn analyse(file: &Path, count: Option<usize>, progress: &dyn Progress) -> Re
         }
     }
     timings.push(Timing { stage: "modal analysis", wall_s: clock.elapsed().as_secs_f64() });
-    Ok(Analysed { file: file.to_path_buf(), recipe, text, fe, modes, nodes, timings })
+    Ok(Analysed { file: file.to_path_buf(), recipe, text, fe, modes, nodes, solve_report, timings })
 }
 
 fn damping_model(spec: &Spanned<Damping>) -> Result<DampingModel, String> {

@@ -110,7 +110,7 @@ impl Table {
         Self { title: title.into(), columns, rows: Vec::new(), notes: Vec::new() }
     }
 
-    /// Plain text: title, head, a light rule, rows, notes; each line ends with a line feed and has
+    /// Plain text: title, head and a light rule (unless no column has a name), rows, notes; each line ends with a line feed and has
     /// no trailing blanks.
     pub fn text(&self) -> String {
         let mut text = String::new();
@@ -123,12 +123,14 @@ impl Table {
                 let padded = cells.iter().zip(&self.columns).zip(&widths).map(|((t, c), &w)| pad(t, c.align, w));
                 format!("{}\n", format!("  {}", padded.collect::<Vec<_>>().join("  ")).trim_end())
             };
-            text += &line(self.columns.iter().map(|c| c.name.as_str()).collect());
-            if self.has_units() {
-                text += &line(self.columns.iter().map(|c| c.unit.as_str()).collect());
+            if self.columns.iter().any(|c| !c.name.is_empty()) {
+                text += &line(self.columns.iter().map(|c| c.name.as_str()).collect());
+                if self.has_units() {
+                    text += &line(self.columns.iter().map(|c| c.unit.as_str()).collect());
+                }
+                let width = widths.iter().sum::<usize>() + 2 * (widths.len() - 1);
+                text += &format!("  {}\n", "─".repeat(width));
             }
-            let width = widths.iter().sum::<usize>() + 2 * (widths.len() - 1);
-            text += &format!("  {}\n", "─".repeat(width));
             for row in &self.rows {
                 text += &line(self.cells(row).collect());
             }
