@@ -5,6 +5,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
 
+/// Where the end is known.
+const BAR: &str = "{spinner} {msg:20} {bar:40} {pos}/{len}  {elapsed}";
+
+/// Where it is not.
+const COUNT: &str = "{spinner} {msg:20} {pos}  {elapsed}";
+
 /// A line on the terminal that says what is being done.
 #[derive(Debug)]
 pub(super) struct Terminal {
@@ -17,7 +23,7 @@ impl Terminal {
             return Self { bar: None };
         }
         let bar = ProgressBar::new(0);
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {wide_bar} {pos}/{len} {elapsed}") {
+        if let Ok(style) = ProgressStyle::with_template(COUNT) {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(120));
@@ -35,7 +41,11 @@ impl Terminal {
 impl Progress for Terminal {
     fn report(&self, stage: &str, done: usize, total: usize) {
         if let Some(bar) = &self.bar {
-            if bar.message() != stage {
+            let known = total > 0;
+            if bar.message() != stage || known != (bar.length() > Some(0)) {
+                if let Ok(style) = ProgressStyle::with_template(if known { BAR } else { COUNT }) {
+                    bar.set_style(style);
+                }
                 bar.set_message(stage.to_string());
             }
             bar.set_length(total as u64);
