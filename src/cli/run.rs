@@ -68,8 +68,7 @@ pub(super) fn run(arguments: &Arguments, progress: &dyn Progress) -> Result<Outc
             _ => None,
         };
         if built.ranking.scores.iter().any(|s| s.score > 0.0) {
-            let title =
-                format!("{name}: {} {} → {}", built.ranking.criterion, built.ranking.input, built.ranking.output);
+            let title = format!("{name}: scores of the modes");
             let picture = ranking_plot(&title, &built.ranking, &built.selection, threshold).map_err(plotting)?;
             pictures.push(("ranking".to_string(), picture));
         }
