@@ -1,6 +1,7 @@
 //! Scene and reduced models to a system: bodies, joints eliminated by a null space, forces.
 
-use super::bodies::{bodies, find};
+use super::assembly::Assembly;
+use super::bodies::bodies;
 use super::body::{Body, Make};
 use super::channels::channels;
 use super::constraints::{constraints, jointed_modes};
@@ -10,7 +11,7 @@ use super::forces::{applied, load_cases, tires};
 use super::scene::{Analysis, Scene};
 use super::system::{Deflection, System};
 use crate::linalg::split;
-use crate::model::{Axis, ReducedModel};
+use crate::model::ReducedModel;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
@@ -18,14 +19,6 @@ use std::collections::BTreeMap;
 /// joints of a laminate repeat a constraint to about 1e-9; a real constraint of an elastic body is
 /// of the order of its shapes relative to the rigid ones, above 1e-4.
 const REDUNDANT: f64 = 1e-7;
-
-/// Bodies, and how coordinates of the scene's vector map to those of the jointed system.
-pub(super) struct Assembly<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) bodies: Vec<Body<'a>>,
-    /// N×n: scene coordinates per jointed coordinate.
-    pub(super) basis: DMatrix<f64>,
-}
 
 /// Builds the system of a scene. `models` holds the reduced model of each body that names one, by
 /// body name.
@@ -136,35 +129,6 @@ fn run_times(scene: &Scene) -> Result<(f64, f64), SceneError> {
         return Err(SceneError::at(step.span(), format!("{end} s in steps of {h} s is more than 1e10 steps")));
     }
     Ok((h, end))
-}
-
-impl Assembly<'_> {
-    /// A row over one body's coordinates as a row over the jointed coordinates.
-    pub(super) fn jointed(&self, body: usize, row: &DVector<f64>) -> DVector<f64> {
-        let body = &self.bodies[body];
-        self.basis.rows(body.first, body.count()).transpose() * row
-    }
-
-    /// Participation of all scene coordinates along an axis.
-    fn participation(&self, axis: usize) -> DVector<f64> {
-        DVector::from_iterator(
-            self.basis.nrows(),
-            self.bodies.iter().flat_map(|b| b.participation.column(axis).iter().copied().collect::<Vec<_>>()),
-        )
-    }
-
-    /// Row over the jointed coordinates of "leaf:b:z" or "load:z", and its direction.
-    pub(super) fn motion_row(&self, text: &str) -> Result<(DVector<f64>, Axis), SceneError> {
-        let (place, axis) = text.rsplit_once(':').and_then(|(p, a)| Some((p, Axis::parse(a)?))).ok_or_else(|| {
-            SceneError::missing(format!(
-                "found \"{text}\", expected \"body:node:direction\" or \"body:direction\", such as \"leaf:b:z\""
-            ))
-        })?;
-        let (body, node) = find(place, &self.bodies)?;
-        let point = self.bodies[body].position(node)?;
-        let row = self.bodies[body].motion(node, point, axis)?;
-        Ok((self.jointed(body, &row), axis))
-    }
 }
 
 /// The start speed downward of everything, as ẇ; refused where a joint does not allow it.

@@ -1,6 +1,6 @@
 //! The scene's measured channels as rows of the system.
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::error::{SceneError, names};
 use super::scene::Shown;
 use super::system::{ChannelSpec, Reading, Tire};

@@ -1,6 +1,6 @@
 //! Joints as constraint rows, and the modes of the jointed system.
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::bodies::{find, place, resolve};
 use super::error::SceneError;
 use super::joint::held;

@@ -1,6 +1,6 @@
 //! Force laws of a scene attached to the jointed coordinates: tyres, given forces.
 
-use super::assemble::Assembly;
+use super::assembly::Assembly;
 use super::bodies::{find, place};
 use super::effect::{AppliedForce, TireLateral, TireNormal};
 use super::error::SceneError;

@@ -3,6 +3,7 @@
 //! forces solved implicitly.
 
 mod assemble;
+mod assembly;
 mod bodies;
 mod body;
 mod channels;
