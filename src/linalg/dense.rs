@@ -1,7 +1,8 @@
 //! All eigenpairs of a small pencil.
 
+use super::symmetric::symmetric_eigen;
 use super::{FactorError, SymSparse};
-use faer::linalg::solvers::{Llt, SelfAdjointEigen};
+use faer::linalg::solvers::Llt;
 use faer::{Mat, Side};
 use nalgebra::DMatrix;
 
@@ -32,14 +33,14 @@ pub fn dense_pencil(k: &SymSparse, m: &SymSparse, shift: f64) -> Result<(Vec<f64
     factor.L().solve_lower_triangular_in_place(inner.as_mut());
     let mut inner = inner.transpose().to_owned();
     factor.L().solve_lower_triangular_in_place(inner.as_mut());
-    let eigen = SelfAdjointEigen::new(inner.as_ref(), Side::Lower).map_err(|_| FactorError::Singular { row: 0 })?;
+    let (values, turned) = symmetric_eigen(&inner).ok_or(FactorError::Singular { row: 0 })?;
     let rank = mass_rank(&mass);
-    let mut vectors = Mat::from_fn(n, rank, |i, c| eigen.U()[(i, n - 1 - c)]);
+    let mut vectors = Mat::from_fn(n, rank, |i, c| turned[(i, n - 1 - c)]);
     factor.L().transpose().solve_upper_triangular_in_place(vectors.as_mut());
     let mut lambda = Vec::with_capacity(rank);
     let mut columns = Vec::with_capacity(rank);
     for c in 0..rank {
-        let theta = eigen.S().column_vector()[n - 1 - c];
+        let theta = values[n - 1 - c];
         if theta > 0.0 {
             lambda.push(shift + 1.0 / theta);
             columns.push((c, 1.0 / theta.sqrt()));

@@ -18,6 +18,7 @@ mod sparse;
 mod substitute;
 mod supernodes;
 mod symbolic;
+mod symmetric;
 mod tree;
 mod vectorised;
 

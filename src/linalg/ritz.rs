@@ -1,7 +1,8 @@
 //! The projected problem of the Lanczos iteration and its Ritz pairs.
 
 use super::basis::Step;
-use faer::{Mat, Side};
+use super::symmetric::symmetric_eigen;
+use faer::Mat;
 
 /// T = Vᵀ M (K − σM)⁻¹ M V of the finished blocks, dense and symmetric.
 pub(super) struct Projected {
@@ -77,11 +78,8 @@ impl Projected {
     pub(super) fn ritz<const P: usize>(&self, shift: f64, step: &Step<P>) -> Ritz {
         let dims = self.order();
         let t = Mat::from_fn(dims, dims, |r, c| self.t[r][c]);
-        let (values, vectors) = match t.self_adjoint_eigen(Side::Lower) {
-            Ok(eigen) => (eigen.S().column_vector().iter().copied().collect(), eigen.U().to_owned()),
-            // Only NaN makes the symmetric QR iteration fail; it is reported as nothing converged.
-            Err(_) => (vec![0.0; dims], Mat::zeros(dims, dims)),
-        };
+        // Only NaN gives none; it is reported as nothing converged.
+        let (values, vectors) = symmetric_eigen(&t).unwrap_or_else(|| (vec![0.0; dims], Mat::zeros(dims, dims)));
         let largest = values.iter().fold(0.0f64, |m: f64, v: &f64| m.max(v.abs()));
         let mut ritz = Ritz {
             lambda: Vec::new(),
