@@ -25,7 +25,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     matrices: Matrices,
     /// Shift of the eigen-solution, (rad/s)², negative (default: found automatically)
-    #[arg(long, value_name = "SIGMA", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SIGMA", allow_hyphen_values = true, requires = "stiffness", conflicts_with = "model")]
     shift: Option<f64>,
 }
 

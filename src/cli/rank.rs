@@ -87,6 +87,13 @@ pub(super) fn run(arguments: &Arguments, progress: &dyn Progress) -> Result<Outc
         (rule, None) => rule.clone(),
     };
     let ranking = rank(&analysed.modes, criterion, &paths);
+    if let Some(score) = ranking.scores.iter().find(|s| !s.score.is_finite()) {
+        return Err(PipelineError::Request(format!(
+            "{name} of mode {} is not finite: its damping ratio is {}; use --criterion static-gain, or state damping",
+            score.mode,
+            analysed.modes.zeta[score.mode.column()]
+        )));
+    }
     let selection = select(&analysed.modes, &ranking, &rule)?;
     if let Some(file) = &arguments.frf {
         write_atomically(file, frf_csv(&analysed.modes, &paths[0], arguments.points).as_bytes())?;

@@ -132,6 +132,16 @@ fn keep(built: &Built) -> Result<(Check, u64, String), PipelineError> {
     let same_input = old.as_ref().is_some_and(|m| {
         m.recipe == built.reduced.recipe && m.sources == built.reduced.sources && summary_file(output).is_file()
     });
+    let since = old.as_ref().filter(|_| !same_input).map(|m| {
+        let before = Expected {
+            modes: None,
+            model: Some(m.clone()),
+            origin: shown.to_string(),
+            frequency_tolerance: 1e-6,
+            least_mac: 0.999,
+        };
+        check(&built.reduced, &before)
+    });
     let expected = Expected {
         modes: None,
         model: if same_input { old } else { None },
@@ -139,10 +149,17 @@ fn keep(built: &Built) -> Result<(Check, u64, String), PipelineError> {
         frequency_tolerance: 1e-6,
         least_mac: 0.999,
     };
-    let outcome = check(&built.reduced, &expected);
+    let mut outcome = check(&built.reduced, &expected);
+    for change in since.iter().flat_map(|c| &c.differences) {
+        outcome.notes.push(format!(
+            "{} was {} and is {} since recipe or sources changed ({})",
+            change.what, change.expected, change.found, change.change
+        ));
+    }
     if same_input {
         let bytes = std::fs::metadata(output).map_or(0, |m| m.len());
-        return Ok((outcome, bytes, format!("Reduced model {shown} ({:.1} kB) is up to date.\n", bytes as f64 / 1e3)));
+        let state = if outcome.ok { "is up to date" } else { "is kept as it was" };
+        return Ok((outcome, bytes, format!("Reduced model {shown} ({:.1} kB) {state}.\n", bytes as f64 / 1e3)));
     }
     let bytes = write(&built.reduced, output, state_space)?;
     Ok((outcome, bytes, format!("Reduced model written: {shown} ({:.1} kB).\n", bytes as f64 / 1e3)))

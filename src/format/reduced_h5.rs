@@ -142,6 +142,9 @@ pub fn read_reduced(path: &Path) -> Result<ReducedModel, FormatError> {
     parse(bytes).map_err(|fault| fault.in_file(path))
 }
 
+/// What to do about damaged content.
+const REMAKE: &str = "the file is damaged: remake it with `ferrom reduce`";
+
 fn parse(bytes: Vec<u8>) -> Result<ReducedModel, Fault> {
     let file = Reader::open(bytes)?;
     let kind = file.root_note("format")?;
@@ -155,6 +158,14 @@ fn parse(bytes: Vec<u8>) -> Result<ReducedModel, Fault> {
     let omega = file.reals("modes/omega", &[r])?;
     let zeta = file.reals("modes/zeta", &[r])?;
     let origin = file.texts("modes/origin", Some(r))?;
+    if let Some(w) = omega.iter().find(|w| !(w.is_finite() && **w > 0.0)) {
+        return Err(Fault::new(format!("modes/omega holds {w}")).expected("frequencies above zero").cure(REMAKE));
+    }
+    if let Some(z) = zeta.iter().find(|z| !(z.is_finite() && **z >= 0.0)) {
+        return Err(Fault::new(format!("modes/zeta holds {z}"))
+            .expected("damping ratios of zero or above")
+            .cure(REMAKE));
+    }
     let mut modes = Vec::with_capacity(r);
     for k in 0..r {
         let all = [Origin::Rigid, Origin::Computed, Origin::Imported, Origin::Measured];
@@ -231,6 +242,13 @@ fn parse(bytes: Vec<u8>) -> Result<ReducedModel, Fault> {
     let hashes = file.texts("provenance/sha256", Some(paths.len()))?;
     let sources = paths.into_iter().zip(source_roles).zip(hashes);
     let kept = file.integers("selection/modes", None)?;
+    let mass = file.reals("rigid/mass", &[1])?[0];
+    if !(mass.is_finite() && mass > 0.0) {
+        return Err(Fault::new(format!("rigid/mass holds {mass}")).expected("a mass above zero").cure(REMAKE));
+    }
+    if file.matrix("shapes", k, r)?.iter().any(|v| !v.is_finite()) {
+        return Err(Fault::new("shapes holds a value that is no number").expected("finite numbers").cure(REMAKE));
+    }
     Ok(ReducedModel {
         name: file.root_note("name")?,
         shapes: file.matrix("shapes", k, r)?,

@@ -29,6 +29,11 @@ pub enum ModalError {
         /// Where it was noticed.
         dof: String,
     },
+    /// Rigid translations carry no kinetic energy.
+    #[error(
+        "the mass matrix gives rigid translations no mass, as a stiffness matrix would: the stiffness and mass files look exchanged"
+    )]
+    Exchanged,
     /// M = 0.
     #[error("the mass matrix is zero; natural frequencies need mass")]
     NoMass,

@@ -77,6 +77,9 @@ pub fn solve_with_report(
         }
     };
     report.add("rigid motions", since, 0, format!("{free} free, first elastic ω² about {guess:.3e}"));
+    // Fewer than the rigid modes would cut through a root that is repeated by nature, and the first
+    // elastic one is what tells it from them.
+    let options = &ModalOptions { count: options.count.max(free), ..*options };
     let start = Start {
         shift: options.shift.unwrap_or(-guess),
         wanted: options.count.min(n),
@@ -150,6 +153,14 @@ fn check(fe: &FeModel, options: &ModalOptions) -> Result<(), ModalError> {
     if m.iter().all(|&v| v == 0.0) {
         return Err(ModalError::NoMass);
     }
+    if let Some(motions) = crate::model::rigid_motions(fe) {
+        // A mass matrix moves with every translation; a stiffness matrix given in its place does not.
+        let heavy = fe.mass.mul_block(&motions);
+        let moved = (0..3).map(|d| motions.column(d).dot(&heavy.column(d))).fold(0.0, f64::max);
+        if moved <= 1e-9 * fe.mass.trace() {
+            return Err(ModalError::Exchanged);
+        }
+    }
     for j in 0..dofs {
         if m[j] < 0.0 {
             return Err(ModalError::IndefiniteMass { dof: fe.dofs.describe(j) });
@@ -190,11 +201,11 @@ fn noise_of_lowest(fe: &FeModel, pairs: &Pairs, relative: f64) -> f64 {
 fn rigid_count(lambda: &[f64], below: f64) -> usize {
     let mut best = (0, 10.0);
     // An eigenvalue that happens to be 0 to the bit is no wider gap than rounding beside the others.
-    let rounding = 1e-14 * lambda.last().map_or(0.0, |l| l.abs());
-    let mut largest = rounding.max(1e-3 * below).max(f64::MIN_POSITIVE);
+    let rounding = (1e-14 * lambda.last().map_or(0.0, |l| l.abs())).max(1e-3 * below).max(f64::MIN_POSITIVE);
+    let mut largest = 0.0f64;
     for (s, pair) in lambda.windows(2).enumerate() {
         largest = largest.max(pair[0].abs());
-        let ratio = pair[1] / largest;
+        let ratio = pair[1] / largest.max(rounding);
         if largest <= below.max(1e-9 * pair[1]) && ratio > best.1 {
             best = (s + 1, ratio);
         }

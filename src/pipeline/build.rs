@@ -3,7 +3,8 @@
 use super::recipe::{Damping, NodeSpec, Recipe};
 use super::{PipelineError, output_file, summary_file};
 use crate::format::{
-    nearest, parse_toml, read_fe_model, reduced_to_bytes, summary_to_text, toml_error_at, write_atomically,
+    nearest, parse_toml, read_fe_model, read_summary, reduced_to_bytes, summary_to_text, toml_error_at,
+    write_atomically,
 };
 use crate::modal::{DAMPING_PRESETS, DampingModel, ModalOptions, SolveReport, set_damping, solve_with_report};
 use crate::model::{
@@ -89,6 +90,14 @@ pub fn analyse(file: &Path, count: Option<usize>, progress: &dyn Progress) -> Re
     let (recipe, text): (Recipe, String) = parse_toml(file)?;
     let fail = |span: Range<usize>, message: String| recipe_error(file, &text, span, message);
     let folder = file.parent().unwrap_or(Path::new("."));
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if recipe.name.is_empty() || !recipe.name.chars().all(plain) {
+        return Err(PipelineError::Request(format!(
+            "{}: name \"{}\" also names files; use letters, digits, - and _",
+            file.display(),
+            recipe.name
+        )));
+    }
     let damping = damping_model(&recipe.damping).map_err(|m| fail(recipe.damping.span(), m))?;
     let asked = count.unwrap_or(*recipe.modal.count.get_ref());
     if asked == 0 {
@@ -240,6 +249,15 @@ pub fn build(mut analysed: Analysed, rule: Option<&Rule>, progress: &dyn Progres
         )
     })?;
     let ranking = rank(&analysed.modes, criterion, &paths);
+    if let Some(score) = ranking.scores.iter().find(|s| !s.score.is_finite()) {
+        let message = format!(
+            "{} of mode {} is not finite: its damping ratio is {}; rank undamped modes by \"static-gain\", or state damping",
+            ranking.criterion,
+            score.mode,
+            analysed.modes.zeta[score.mode.column()]
+        );
+        return Err(analysed.at(settings.criterion.span(), message));
+    }
     let selection = select(&analysed.modes, &ranking, rule.unwrap_or(&analysed.recipe.select))?;
     analysed.timings.push(Timing { stage: "rank and select", wall_s: clock.elapsed().as_secs_f64() });
     let clock = Instant::now();
@@ -273,9 +291,20 @@ pub fn write(model: &ReducedModel, output: &Path, state_space: bool) -> Result<u
     let joints: Vec<usize> =
         all.iter().copied().filter(|&r| model.nodes[model.dofs[r].node].role == Role::Joint).collect();
     let system = state_space.then(|| StateSpace::new(model, &joints, &all));
+    if output.extension().is_none_or(|e| e != "h5") {
+        return Err(PipelineError::Request(format!("{}: a reduced model is written as .h5", output.display())));
+    }
+    let summary = summary_file(output);
+    if summary.exists() && read_summary(&summary).is_err() {
+        return Err(PipelineError::Request(format!(
+            "{}: this file is no summary of a reduced model and would be overwritten by one; choose another name than {}",
+            summary.display(),
+            output.display()
+        )));
+    }
     let bytes = reduced_to_bytes(model, system.as_ref())?;
     write_atomically(output, &bytes)?;
-    write_atomically(&summary_file(output), summary_to_text(model).as_bytes())?;
+    write_atomically(&summary, summary_to_text(model).as_bytes())?;
     Ok(bytes.len() as u64)
 }
 

@@ -24,8 +24,12 @@ pub enum ResidualError {
 }
 
 /// Corrections of the shift; each gains a factor |σ|/(ω²_next − σ), at worst one half for a shift of
-/// the size of the first elastic ω² and no computed elastic mode, so 60 reach rounding.
-const MOST_CORRECTIONS: usize = 60;
+/// the size of the first elastic ω² and no computed elastic mode, so 60 reach rounding;
+/// the rest is for finding that shift.
+const MOST_CORRECTIONS: usize = 80;
+
+/// Corrections between looks at the shift: soft motions show only once the stiff ones have settled.
+const MOVE_EVERY: usize = 4;
 
 /// Directions of the static response whose strain energy is below this share of the largest (after
 /// scaling each response to unit energy) are combinations of the others plus rounding.
@@ -82,12 +86,17 @@ fn static_response(
     force: &DMatrix<f64>,
 ) -> Result<DMatrix<f64>, ResidualError> {
     let shift = if modes.shift < 0.0 { modes.shift } else { -first_elastic(modes) };
-    let factor = ShiftedFactor::new(&fe.stiffness, &fe.mass, shift)?;
+    let mut shift = shift;
+    let mut factor = ShiftedFactor::new(&fe.stiffness, &fe.mass, shift)?;
     let phi = &modes.shapes;
     let mass_phi = fe.mass.mul_block(phi);
     let gains = phi.transpose() * force;
     let free_force = force - &mass_phi * &gains;
     let mut response: DMatrix<f64> = DMatrix::zeros(force.nrows(), force.ncols());
+    // With every mode computed nothing is left but rounding: changes count against the whole response.
+    let mut unprojected = force.clone();
+    factor.solve_in_place(&mut unprojected);
+    let whole = unprojected.norm();
     let mut change = f64::INFINITY;
     let mut iterations = 0;
     // A change below a few roundings of the response is as converged as doubles can show.
@@ -102,7 +111,23 @@ fn static_response(
         factor.solve_in_place(&mut next);
         let drift = mass_phi.transpose() * &next;
         next -= phi * drift;
-        change = (&next - &response).norm() / next.norm().max(f64::MIN_POSITIVE);
+        if iterations % MOVE_EVERY == 0 && iterations < 4 * MOVE_EVERY {
+            // With few modes computed the shift may be far above the next ω²: each correction would
+            // gain next to nothing. The softest response tells where it should be.
+            let softest = (0..next.ncols())
+                .map(|c| next.column(c).into_owned())
+                .map(|u| {
+                    u.dot(&(&DVector::from(fe.stiffness.mul(u.as_slice()))))
+                        / u.dot(&DVector::from(fe.mass.mul(u.as_slice())))
+                })
+                .filter(|l| l.is_finite() && *l > 0.0)
+                .fold(f64::INFINITY, f64::min);
+            if softest < -0.1 * shift {
+                shift = -softest;
+                factor = ShiftedFactor::new(&fe.stiffness, &fe.mass, shift)?;
+            }
+        }
+        change = (&next - &response).norm() / whole.max(f64::MIN_POSITIVE);
         response = next;
         iterations += 1;
     }

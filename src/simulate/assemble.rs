@@ -87,8 +87,11 @@ pub fn assemble(scene: &Scene, models: &BTreeMap<String, ReducedModel>) -> Resul
 }
 
 fn check_effects(scene: &Scene) -> Result<(), SceneError> {
-    for effect in &scene.effects {
+    for (k, effect) in scene.effects.iter().enumerate() {
         let name = effect.get_ref();
+        if scene.effects[..k].iter().any(|e| e.get_ref() == name) {
+            return Err(SceneError::at(effect.span(), format!("effect \"{name}\" is listed twice")));
+        }
         if !super::effect::EFFECTS.iter().any(|e| e.name == name) {
             let nearest = super::effect::EFFECTS
                 .iter()
@@ -102,6 +105,11 @@ fn check_effects(scene: &Scene) -> Result<(), SceneError> {
                 ),
             ));
         }
+    }
+    if scene.has("residual-flexibility") && !scene.has("flexibility") {
+        return Err(SceneError::missing(
+            "effect \"residual-flexibility\" completes \"flexibility\" and cannot act without it; list both or neither",
+        ));
     }
     if scene.has("tire-lateral") && !scene.has("tire-normal") {
         return Err(SceneError::missing(

@@ -98,6 +98,14 @@ fn rigid_body<'a>(
             if values.iter().any(|&v| v < 0.0) {
                 return Err(SceneError::at(given.span(), format!("inertia of \"{name}\" is negative")));
             }
+            if values == [0.0; 3] {
+                return Err(SceneError::at(
+                    given.span(),
+                    format!(
+                        "inertia of \"{name}\" is zero, which would hold it against rotation; give its inertia, or leave the key out for a body that does not rotate"
+                    ),
+                ));
+            }
             values
         }
     };

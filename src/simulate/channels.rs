@@ -14,6 +14,9 @@ pub(super) fn channels(assembly: &Assembly, tires: &[Tire]) -> Result<Vec<Channe
             return Err(SceneError::at(measure.name.span(), format!("two channels are called \"{name}\"")));
         }
         let spec = if measure.show == Shown::Force {
+            if let Some(other) = &measure.minus {
+                return Err(SceneError::at(other.span(), "minus goes with motions, not with forces; remove it"));
+            }
             let reading = force_reading(measure.of.get_ref(), tires, assembly)
                 .map_err(|m| SceneError::at(measure.of.span(), m))?;
             ChannelSpec { name: name.clone(), unit: "N".into(), reading, shown: measure.show, datum: measure.datum }

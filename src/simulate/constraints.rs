@@ -5,6 +5,7 @@ use super::bodies::{find, place, resolve};
 use super::error::SceneError;
 use super::joint::held;
 use crate::linalg::split;
+use crate::model::Axis;
 use nalgebra::{DMatrix, DVector};
 
 /// Directions whose elastic part is below this share are motions of the mechanism as a whole.
@@ -29,6 +30,12 @@ pub(super) fn constraints(assembly: &Assembly) -> Result<DMatrix<f64>, SceneErro
                 format!("joint \"{}\" joins the ground to itself", name.get_ref()),
             ));
         }
+        if between.get_ref()[0] == between.get_ref()[1] {
+            return Err(SceneError::at(
+                between.span(),
+                format!("joint \"{}\" joins \"{}\" to itself", name.get_ref(), between.get_ref()[0]),
+            ));
+        }
         let point = match &joint.at {
             Some(at) => resolve(at.get_ref(), &assembly.bodies).map_err(|e| place(e, at.span()))?,
             None => {
@@ -44,6 +51,16 @@ pub(super) fn constraints(assembly: &Assembly) -> Result<DMatrix<f64>, SceneErro
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
                 if let Some((body, node)) = *end {
                     let motion = assembly.bodies[body].motion(node, point, axis).map_err(at_ends)?;
+                    if axis.is_rotation() && motion.iter().all(|m| *m == 0.0) && !guided(assembly, body, axis) {
+                        return Err(SceneError::at(
+                            joint.holds.span(),
+                            format!(
+                                "joint \"{}\" holds {axis} to \"{1}\", which has no inertia and so would hold it still; give \"{1}\" inertia, or guide its {axis} by a joint to the ground",
+                                name.get_ref(),
+                                assembly.bodies[body].name
+                            ),
+                        ));
+                    }
                     let first = assembly.bodies[body].first;
                     for (k, value) in motion.iter().enumerate() {
                         row[first + k] += sign * value;
@@ -54,6 +71,17 @@ pub(super) fn constraints(assembly: &Assembly) -> Result<DMatrix<f64>, SceneErro
         }
     }
     Ok(DMatrix::from_fn(rows.len(), total, |r, c| rows[r][c]))
+}
+
+/// True when a joint between the body and the ground holds the rotation: then the body rightly does
+/// not turn.
+fn guided(assembly: &Assembly, body: usize, axis: Axis) -> bool {
+    assembly.scene.joint.values().any(|joint| {
+        let ends = joint.between.get_ref();
+        let of_body = |end: &str| find(end, &assembly.bodies).is_ok_and(|(b, _)| b == body);
+        let grounded = (ends[0] == "ground" && of_body(&ends[1])) || (ends[1] == "ground" && of_body(&ends[0]));
+        grounded && held(joint.holds.get_ref()).is_ok_and(|axes| axes.contains(&axis))
+    })
 }
 
 /// Basis (N×n) and λ (n) of the jointed coordinates: mechanism motions with λ exactly 0 first, then

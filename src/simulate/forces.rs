@@ -30,6 +30,15 @@ pub(super) fn tires(assembly: &Assembly) -> Result<Vec<Tire>, SceneError> {
             return Err(SceneError::at(span, format!("tire {key} is {value}, expected zero or above")));
         }
     }
+    if table.radius.si <= 0.0 {
+        return Err(SceneError::missing(format!("tire radius is {} m, expected above zero", table.radius.si)));
+    }
+    if let Some(height) = scene.start.height.filter(|h| h.si < 0.0) {
+        return Err(SceneError::missing(format!(
+            "start height is {} m: the tyres would begin pressed into the ground; expected zero or above",
+            height.si
+        )));
+    }
     let lateral = lateral_law(scene)?;
     let mut tires = Vec::new();
     let mut heights = Vec::new();
@@ -79,6 +88,9 @@ fn lateral_law(scene: &Scene) -> Result<Option<TireLateral>, SceneError> {
     }
     if law.friction < 0.0 {
         return Err(SceneError::at(table.friction.span(), "friction coefficient is negative"));
+    }
+    if table.regularization_speed.get_ref().si < 0.0 {
+        return Err(SceneError::at(table.regularization_speed.span(), "regularization-speed is negative"));
     }
     if law.base_speed <= 0.0 {
         return Err(SceneError::at(

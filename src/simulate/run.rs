@@ -63,6 +63,7 @@ fn transient(system: &System, progress: &dyn Progress) -> Result<Trajectory, Sce
     }
     let wall_s = begun.elapsed().as_secs_f64();
     let energy = exact.balance.close(system, &exact.now);
+    Watch::judge(&energy).map_err(SceneError::Numerics)?;
     let counts = exact.counts;
     warnings.extend(watch.warnings(system, &counts, &energy));
     let (time, channels) = recorder.close(rest.as_ref().ok());

@@ -16,6 +16,9 @@ const STEPS_PER_PERIOD: f64 = 10.0;
 /// Energy appearing from nowhere above this share of the input is reported.
 const ENERGY_SHARE: f64 = 1e-2;
 
+/// Above this share the result is refused: half of the energy is made up.
+const NONSENSE: f64 = 0.5;
+
 /// Watches a run.
 #[derive(Debug)]
 pub(super) struct Watch {
@@ -50,6 +53,17 @@ impl Watch {
             }
         }
         Ok(())
+    }
+
+    /// An error when energy came from nowhere: no number of the run means anything then.
+    pub(super) fn judge(energy: &Energy) -> Result<(), String> {
+        if energy.relative_error <= NONSENSE {
+            return Ok(());
+        }
+        Err(format!(
+            "the energy balance is off by {:.1e} of the energy put in, so the result means nothing; shorten the step, or look for stiffness or damping of the wrong size",
+            energy.relative_error
+        ))
     }
 
     /// What to tell at the end.
