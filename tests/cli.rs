@@ -159,7 +159,12 @@ fn scenes_that_cannot_be_built_name_the_line() {
     let path = folder("scenes");
     let reduced = at_root("reduced/leaf-spring.h5");
     let scene = scene.replace("../../reduced/leaf-spring.h5", reduced.to_str().expect("UTF-8"));
-    let cases: [(&str, &str, &[&str]); 8] = [
+    let cases: [(&str, &str, &[&str]); 13] = [
+        ("\"gravity\",\n", "\"gravity\",\n  \"gravity\",\n", &["listed twice"]),
+        ("between = [\"load\", \"leaf:b\"]", "between = [\"leaf:b\", \"leaf:b\"]", &["to itself"]),
+        ("inertia = [\"3.45e-3 kg m^2\", \"5.62e-3 kg m^2\", \"3.45e-3 kg m^2\"] #", "#", &["axle-c", "no inertia"]),
+        ("[start] #", "[start]\nheight = \"-1 m\" #", &["start height", "-1"]),
+        ("radius = \"0.1 m\"", "radius = \"-0.1 m\"", &["radius", "above zero"]),
         ("step = \"1 ms\"", "step = \"0 ms\"", &[":16", "above zero"]),
         ("\"tire-lateral\",\n]", "\"tire-latteral\",\n]", &[":11", "tire-lateral"]),
         ("between = [\"load\", \"leaf:b\"]", "between = [\"load\", \"leaf:q\"]", &["leaf", "\"q\""]),
@@ -248,6 +253,59 @@ fn the_main_job_runs_and_keeps_what_is_committed() {
         assert!(std::fs::metadata(path).is_ok_and(|m| m.len() > 100), "{path}");
     }
     assert!(std::fs::read(at_root("reduced/leaf-spring.h5")).expect("the model") == committed);
+}
+
+#[test]
+fn a_summary_never_overwrites_another_file() {
+    let path = broken_chain("overwrite", "push.toml", |t| t + "\n");
+    let scene = std::fs::read_to_string(path.join("push.toml")).expect("a scene");
+    let model = path.to_str().expect("UTF-8");
+    for name in ["push.h5", "model.h5"] {
+        let output = ferrom(&["reduce", model, "-o", path.join(name).to_str().expect("UTF-8")]);
+        assert_eq!(code(&output), 3, "{name}");
+        assert!(!path.join(name).exists());
+    }
+    assert_eq!(std::fs::read_to_string(path.join("push.toml")).expect("a scene"), scene);
+}
+
+#[test]
+fn exchanged_matrices_are_told() {
+    let path = folder("exchanged");
+    for entry in std::fs::read_dir(at_root("models/free-free-beam")).expect("the folder") {
+        let from = entry.expect("an entry").path();
+        std::fs::copy(&from, path.join(from.file_name().expect("a name"))).expect("a copy");
+    }
+    std::fs::rename(path.join("mass.mtx"), path.join("other.mtx")).expect("a move");
+    std::fs::rename(path.join("stiffness.mtx"), path.join("mass.mtx")).expect("a move");
+    std::fs::rename(path.join("other.mtx"), path.join("stiffness.mtx")).expect("a move");
+    let output = ferrom(&["modes", path.to_str().expect("UTF-8")]);
+    assert_eq!(code(&output), 3);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("exchanged"));
+}
+
+#[test]
+fn undamped_modes_have_no_peak() {
+    let path = broken_chain("peak", "model.toml", |t| t.replace("static-gain", "peak-gain"));
+    refused(&path, 3, &["model.toml:", "not finite", "static-gain"]);
+}
+
+#[test]
+fn fewer_modes_than_rigid_ones_are_not_cut() {
+    let modes = json(&["modes", "models/leaf-spring", "-n", "1", "--json"]);
+    assert_eq!((&modes["rigid"], &modes["complete"]["proved"]), (&Value::from(6), &Value::from(true)));
+}
+
+#[test]
+fn a_run_that_blows_up_is_refused() {
+    let scene = std::fs::read_to_string(at_root("models/leaf-spring/drop-3mps.toml")).expect("a scene");
+    let reduced = at_root("reduced/leaf-spring.h5");
+    let scene = scene
+        .replace("../../reduced/leaf-spring.h5", reduced.to_str().expect("UTF-8"))
+        .replace("damping = \"175 N s/m\"", "damping = \"1e12 N s/m\"");
+    let file = folder("blow-up").join("drop.toml");
+    std::fs::write(&file, scene).expect("a file");
+    let output = ferrom(&["simulate", file.to_str().expect("UTF-8")]);
+    assert_eq!(code(&output), 4, "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[test]

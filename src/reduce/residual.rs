@@ -117,7 +117,7 @@ fn static_response(
             let softest = (0..next.ncols())
                 .map(|c| next.column(c).into_owned())
                 .map(|u| {
-                    u.dot(&(&DVector::from(fe.stiffness.mul(u.as_slice()))))
+                    u.dot(&DVector::from(fe.stiffness.mul(u.as_slice())))
                         / u.dot(&DVector::from(fe.mass.mul(u.as_slice())))
                 })
                 .filter(|l| l.is_finite() && *l > 0.0)
