@@ -7,7 +7,7 @@ use faer::{Mat, Side};
 /// A is scaled to a largest entry between one and two first, by a power of two, so without
 /// rounding. faer's divide-and-conquer deflates below 8ε·max(‖D‖, ‖z‖) with z part of a unit vector
 /// (Gu & Eisenstat 1995; LAPACK's dlaed2, whose caller dstedc scales for this reason): on a matrix
-/// of θ = 1/(ω² − σ) ≈ 10⁻⁹ that is 10⁻⁶ of ‖A‖ instead of ε, and eigenvectors mix although the
+/// of θ = 1/(ω² − σ) ≈ 10⁻⁹ that is 10⁻⁷ of ‖A‖ instead of ε, and eigenvectors mix although the
 /// residual estimates made from their last rows are small.
 pub(super) fn symmetric_eigen(a: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
     let n = a.nrows();
@@ -34,7 +34,7 @@ pub(super) fn symmetric_eigen(a: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
 mod tests {
     use super::*;
 
-    /// Like a projected operator: θ from 5·10⁻⁹ down to 10⁻¹⁴, turned by reflections.
+    /// Like a projected operator: θ from 5·10⁻⁹ down to 5·10⁻¹⁵, turned by reflections.
     fn graded(n: usize, size: f64) -> Mat<f64> {
         let mut a = Mat::from_fn(n, n, |i, j| if i == j { size * 0.95f64.powi(i as i32) } else { 0.0 });
         for turn in 1..4 {
